@@ -1,0 +1,109 @@
+//! The part of a protocol that says how the ratings are analysed.
+
+use serde::{Deserialize, Serialize};
+
+/// How the ratings are analysed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AnalysisPlan {
+    /// The factors of which every subject has seen every level, in the order of the report.
+    pub within: Vec<String>,
+    /// The factors of which a subject has one level.
+    #[serde(default)]
+    pub between: Vec<String>,
+    /// Levels that the analysis of variance leaves out.
+    #[serde(default)]
+    pub exclude: Vec<Exclusion>,
+    /// The sphericity correction that the report leads with.
+    pub correction: Correction,
+    /// The confidence level of intervals, between 0 and 1.
+    pub confidence: f64,
+    /// Test statistics printed elsewhere, shown beside ours.
+    #[serde(default)]
+    pub published: Vec<PublishedEffect>,
+}
+
+impl AnalysisPlan {
+    /// Between factors first, then within factors, each in the order given.
+    pub fn factors(&self) -> impl Iterator<Item = &str> {
+        self.between.iter().chain(&self.within).map(String::as_str)
+    }
+
+    pub(crate) fn fault(&self) -> Option<(&'static str, String, &'static str)> {
+        let known = ["channel", "rays"];
+        if let Some(unknown) = self.factors().find(|factor| !known.contains(factor)) {
+            return Some((
+                "analysis",
+                format!("the factor {unknown:?}"),
+                "factors of the stimulus set: channel, rays",
+            ));
+        }
+        let mut factors: Vec<&str> = self.factors().collect();
+        factors.sort_unstable();
+        if factors.is_empty() || factors.windows(2).any(|pair| pair[0] == pair[1]) {
+            return Some((
+                "analysis",
+                format!("the factors {factors:?}"),
+                "at least one factor, and none twice",
+            ));
+        }
+        if let Some(exclusion) = self
+            .exclude
+            .iter()
+            .find(|exclusion| !known.contains(&exclusion.factor.as_str()))
+        {
+            let found = format!("the factor {:?}", exclusion.factor);
+            return Some((
+                "analysis.exclude",
+                found,
+                "a factor of the stimulus set: channel, rays",
+            ));
+        }
+        if !(self.confidence > 0.5 && self.confidence < 1.0) {
+            return Some((
+                "analysis.confidence",
+                self.confidence.to_string(),
+                "a level above 0.5 and below 1",
+            ));
+        }
+        None
+    }
+}
+
+/// Levels of one factor that the analysis of variance leaves out.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Exclusion {
+    /// The factor.
+    pub factor: String,
+    /// Its levels that are left out.
+    pub levels: Vec<String>,
+    /// Why, for the report.
+    pub reason: String,
+}
+
+/// A correction of the degrees of freedom for a covariance that is not spherical.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Correction {
+    /// None: the F test as it stands.
+    None,
+    /// Greenhouse & Geisser (1959).
+    GreenhouseGeisser,
+    /// Huynh & Feldt (1976) in the form of Lecoutre (1991).
+    HuynhFeldt,
+}
+
+/// A test statistic printed elsewhere.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PublishedEffect {
+    /// The effect: its factors joined by `:`.
+    pub effect: String,
+    /// Degrees of freedom of the numerator.
+    pub df_num: f64,
+    /// Degrees of freedom of the denominator.
+    pub df_den: f64,
+    /// The F value.
+    pub f: f64,
+}

@@ -1,0 +1,46 @@
+//! The contract: what a study is, and the files in which its parts meet.
+//!
+//! A *protocol* is one TOML file that states a whole study: which stimuli, how they are shown, how the
+//! ratings are analysed. The renderer, the experiment and the analysis all read that file and never each
+//! other; they meet in the [`Manifest`] of the stimulus set and in the [`ratings`](rating) of the sessions.
+//!
+//! Conventions of every crate here: wavelengths in nm, times in seconds, angles in degrees, screen
+//! coordinates from 0 to 1 with x to the right and y down, spectra as power per nm. A number without a
+//! type carries its unit in its name.
+//!
+//! Not here: how a ray, a session or a test statistic is computed.
+
+mod analysis_plan;
+mod atomic_file;
+mod channel;
+mod data_set;
+mod input_error;
+mod manifest;
+mod model_observer;
+mod protocol;
+pub mod rating;
+mod ray_count;
+mod session_plan;
+mod sha256;
+mod stimulus;
+mod stimulus_plan;
+mod study;
+mod subject_id;
+mod viewing;
+
+pub use analysis_plan::{AnalysisPlan, Correction, Exclusion, PublishedEffect};
+pub use atomic_file::{write_atomically, write_atomically_with};
+pub use channel::{Channel, ChannelGroup, PerChannel};
+pub use data_set::{DataSet, Observer};
+pub use input_error::{InputError, ReadError};
+pub use manifest::{Manifest, ManifestFile, ManifestStimulus, ViewingGeometry};
+pub use model_observer::{ModelObserver, NormalParameter};
+pub use protocol::Protocol;
+pub use ray_count::RayCount;
+pub use session_plan::{Layout, Scale, SessionPlan, SessionTexts};
+pub use sha256::Sha256Digest;
+pub use stimulus::{Stimulus, StimulusId};
+pub use stimulus_plan::{Anchors, Quadrature, RefinementDriver, Sequence, StimulusPlan, TreePlan};
+pub use study::Study;
+pub use subject_id::SubjectId;
+pub use viewing::Viewing;

@@ -1,0 +1,69 @@
+//! A protocol with its place and its digest: what every command is given.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::{InputError, Protocol, ReadError, Sha256Digest};
+
+/// A protocol as it was read from a file.
+#[derive(Clone, Debug)]
+pub struct Study {
+    /// What the file states.
+    pub protocol: Protocol,
+    /// The file.
+    pub path: PathBuf,
+    /// The digest of the file; it goes into everything that is made from it.
+    pub sha256: Sha256Digest,
+}
+
+impl Study {
+    /// Reads a protocol file.
+    ///
+    /// # Errors
+    ///
+    /// [`ReadError::Input`] if the file is missing or is not a protocol, [`ReadError::Io`] if the system
+    /// would not give it.
+    pub fn read(path: &Path) -> Result<Self, ReadError> {
+        let bytes =
+            fs::read(path).map_err(|error| ReadError::from_io(path, "a protocol (TOML)", error))?;
+        let sha256 = Sha256Digest::of(&bytes);
+        let text = String::from_utf8(bytes).map_err(|error| {
+            InputError::new(
+                path,
+                format!("bytes that are not UTF-8 ({})", error.utf8_error()),
+                "a protocol (TOML)",
+            )
+        })?;
+        Ok(Self {
+            protocol: Protocol::from_toml(path, &text)?,
+            path: path.to_owned(),
+            sha256,
+        })
+    }
+
+    /// The scene file of the stimulus set.
+    pub fn scene_path(&self) -> PathBuf {
+        let folder = self.path.parent().unwrap_or_else(|| Path::new(""));
+        folder.join(&self.protocol.stimuli.scene)
+    }
+
+    /// Where the stimulus set stands unless the user says otherwise: `stimuli/<set>`.
+    pub fn default_stimuli_dir(&self) -> PathBuf {
+        Path::new("stimuli").join(&self.protocol.stimuli.set)
+    }
+
+    /// Where people's ratings stand unless the user says otherwise: `data/<study>`.
+    pub fn default_data_dir(&self) -> PathBuf {
+        Path::new("data").join(&self.protocol.study)
+    }
+
+    /// Where simulated ratings stand unless the user says otherwise: `data/<study>-simulated`.
+    pub fn default_simulated_data_dir(&self) -> PathBuf {
+        Path::new("data").join(format!("{}-simulated", self.protocol.study))
+    }
+
+    /// Where the report stands unless the user says otherwise: `reports/<study>`.
+    pub fn default_report_dir(&self) -> PathBuf {
+        Path::new("reports").join(&self.protocol.study)
+    }
+}

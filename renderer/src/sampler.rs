@@ -1,0 +1,27 @@
+//! What the screen tree asks of a scene: rays in two steps, as in section 3.3 of Meyer & Liu (1992).
+//!
+//! Intersection makes the ray tree, geometry only; shading then computes only the channels asked for.
+//! Both depend on nothing but their arguments, so that samples can be taken in any order on any thread.
+
+use protocols::Channel;
+
+/// A point of the screen: x from 0 (left) to 1 (right), y from 0 (top) to 1 (bottom).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScreenPoint {
+    /// From left to right.
+    pub x: f64,
+    /// From top to bottom.
+    pub y: f64,
+}
+
+/// Something that can be sampled at any point of the screen.
+pub trait Sampler: Sync {
+    /// What one ray found: hits, lights that are visible from them, reflected rays; no colour.
+    type RayTree: Default + Clone + Send + Sync;
+
+    /// Follows the ray through `at` and all rays that it spawns; `tree` is overwritten, its memory reused.
+    fn intersect(&self, at: ScreenPoint, tree: &mut Self::RayTree);
+
+    /// The tristimulus value of one channel for a ray tree; the same whatever else is shaded.
+    fn shade(&self, tree: &Self::RayTree, channel: Channel) -> f32;
+}
