@@ -1,0 +1,60 @@
+//! Everything that can go wrong between a scene file and a stimulus set.
+
+use std::path::{Path, PathBuf};
+
+use protocols::{InputError, ReadError};
+
+/// Why a picture or a stimulus set was not made.
+#[derive(Debug, thiserror::Error)]
+pub enum RendererError {
+    /// A scene, protocol, manifest or image is wrong, or a command asks for what cannot be.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// The system refused a file.
+    #[error("cannot {action} \"{}\": {source}", path.display())]
+    Io {
+        /// What was tried: `read`, `write`.
+        action: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// An image or a figure could not be encoded.
+    #[error("cannot encode \"{}\": {reason}", path.display())]
+    Encoding {
+        /// The file that was to be written.
+        path: PathBuf,
+        /// What the encoder said.
+        reason: String,
+    },
+}
+
+impl RendererError {
+    /// Whether the input or the command is wrong (exit code 2), rather than the system (exit code 1).
+    pub fn is_input(&self) -> bool {
+        matches!(self, Self::Input(_))
+    }
+
+    /// A refusal to write `path`.
+    pub(crate) fn writing(path: &Path, source: std::io::Error) -> Self {
+        Self::Io {
+            action: "write",
+            path: path.to_owned(),
+            source,
+        }
+    }
+}
+
+impl From<ReadError> for RendererError {
+    fn from(error: ReadError) -> Self {
+        match error {
+            ReadError::Input(error) => Self::Input(error),
+            ReadError::Io { file, source } => Self::Io {
+                action: "read",
+                path: file,
+                source,
+            },
+        }
+    }
+}
