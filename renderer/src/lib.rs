@@ -3,7 +3,34 @@
 //! Conventions: wavelengths in nm; screen coordinates from 0 to 1, x to the right, y down; world axes
 //! right-handed with z up, lengths in metres.
 
+mod account;
+mod cell;
+mod channel_image;
+mod channel_samples;
 mod error;
+mod estimate;
+mod filter;
+mod matrix3;
+mod opponent;
+mod priority;
+mod reconstruct;
+mod refine;
 mod sampler;
+mod screen_tree;
+mod srgb;
 
+pub use account::RayAccount;
+pub use cell::{Cell, Rectangle};
+pub use channel_image::ChannelImage;
 pub use error::RendererError;
+pub use estimate::Estimate;
+pub use matrix3::Matrix3;
+pub use opponent::{
+    AC1C2_FROM_XYZ, LINEAR_SRGB_FROM_AC1C2, LINEAR_SRGB_FROM_XYZ, SML_FROM_XYZ, XYZ_FROM_AC1C2,
+    ac1c2_from_xyz, linear_srgb_from_ac1c2, xyz_from_ac1c2,
+};
+pub use reconstruct::reconstruct;
+pub use refine::{BATCH, TracePlan, trace};
+pub use sampler::{Sampler, ScreenPoint};
+pub use screen_tree::{Leaf, Reach, ScreenTree};
+pub use srgb::{is_out_of_srgb_gamut, srgb_encode};
