@@ -1,0 +1,13 @@
+//! The screen tree, from samplers that are known in closed form to pixels.
+
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![expect(
+    clippy::cast_possible_truncation,
+    reason = "values of pictures become f32, and places of pixels are small"
+)]
+
+mod analytic;
+mod estimates;
+mod prefix;
+mod reconstruction;
+mod stops;
