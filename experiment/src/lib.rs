@@ -1,1 +1,31 @@
-//! Stub.
+//! Session to ratings: the session machine, its window, and its simulated observers.
+//!
+//! Conventions: times in seconds, lengths on the screen in pixels, 8-bit sRGB. A *submitted* time is when
+//! a frame had been handed to the window system; the onset of light is not measured.
+//!
+//! Not here: how the images are made and how the ratings are analysed. The stimulus set comes in, and the
+//! ratings go out, as files of the crate `protocols`.
+
+mod button;
+mod data_set_files;
+mod error;
+mod frame_clock;
+mod order;
+mod quality;
+mod random;
+mod rating_row;
+mod ratings_log;
+mod session;
+mod sidecar;
+mod simulate;
+mod simulated_observer;
+mod stimulus_set;
+
+pub use button::{Button, Key};
+pub use error::ExperimentError;
+pub use frame_clock::{FrameClock, FrameSummary};
+pub use order::{Trial, trials};
+pub use quality::{Quality, qualities};
+pub use session::{Answer, Ending, Event, Picture, Rules, Screen, Session};
+pub use simulate::{SimulationSummary, simulate};
+pub use stimulus_set::{ScreenImage, StimulusSet};

@@ -1,0 +1,127 @@
+//! The Psych-DS data set around the ratings: its folders and its `dataset_description.json`.
+//!
+//! A data set is of people or of simulated observers, never of both; the description says which, and what
+//! is written into it must agree.
+
+use std::fs::{self, DirBuilder};
+use std::os::unix::fs::DirBuilderExt as _;
+use std::path::Path;
+
+use protocols::rating::columns;
+use protocols::{DataSet, InputError, Observer, ReadError, StimulusPlan, Study, write_atomically};
+use serde_json::{Value, json};
+
+use crate::ExperimentError;
+
+/// Makes the folders and the description of the data set, or checks those that are there.
+pub(crate) fn prepare(
+    data_set: &DataSet,
+    study: &Study,
+    observer: Observer,
+) -> Result<(), ExperimentError> {
+    create_private_folder(data_set.root())?;
+    create_private_folder(&data_set.data_folder())?;
+    let path = data_set.description_path();
+    if path.exists() {
+        return check(data_set, study, observer);
+    }
+    if has_entries(&data_set.data_folder())? {
+        let remedy = "restore it, or name another folder with --data";
+        return Err(InputError::new(
+            path,
+            "no such file beside ratings that are there",
+            "the description of the data set",
+        )
+        .remedy(remedy)
+        .into());
+    }
+    let text = format!("{:#}\n", description(study, observer));
+    write_atomically(&path, text.as_bytes()).map_err(ExperimentError::io("write", &path))
+}
+
+/// Checks that the data set is of this study and of this kind of observer.
+pub(crate) fn check(
+    data_set: &DataSet,
+    study: &Study,
+    observer: Observer,
+) -> Result<(), ExperimentError> {
+    let path = data_set.description_path();
+    let kind = "the description of a data set (JSON)";
+    let text = fs::read_to_string(&path).map_err(|error| ReadError::from_io(&path, kind, error))?;
+    let found: Value = serde_json::from_str(&text)
+        .map_err(|error| InputError::new(&path, error.to_string(), kind))?;
+    let expected = [
+        ("identifier", study.protocol.study.as_str()),
+        ("observer", observer_word(observer)),
+    ];
+    for (field, expected) in expected {
+        if found[field].as_str() != Some(expected) {
+            return Err(
+                InputError::new(&path, found[field].to_string(), format!("{expected:?}"))
+                    .at(format!("field {field}"))
+                    .remedy("people and simulated observers, and two studies, never share a data set: name another folder with --data")
+                    .into(),
+            );
+        }
+    }
+    Ok(())
+}
+
+pub(crate) fn observer_word(observer: Observer) -> &'static str {
+    match observer {
+        Observer::Person => "person",
+        Observer::Simulated => "simulated",
+    }
+}
+
+/// The description: JSON-LD of schema.org, as Psych-DS asks, with every column of the ratings.
+fn description(study: &Study, observer: Observer) -> Value {
+    let protocol = &study.protocol;
+    let (name, who) = match observer {
+        Observer::Person => (protocol.study.clone(), "people"),
+        Observer::Simulated => (
+            format!("{} (simulated)", protocol.study),
+            "simulated observers (a model of vision with bias, gain and noise; no person took part)",
+        ),
+    };
+    let variables: Vec<Value> = columns(&StimulusPlan::factors())
+        .into_iter()
+        .map(|column| {
+            let mut variable = json!({
+                "@type": "PropertyValue",
+                "name": column.name,
+                "description": column.description,
+            });
+            if let Some(unit) = column.unit {
+                variable["unitText"] = unit.into();
+            }
+            variable
+        })
+        .collect();
+    json!({
+        "@context": "https://schema.org",
+        "@type": "Dataset",
+        "name": name,
+        "description": format!("Ratings of image quality by {who}. {}", protocol.title),
+        "identifier": protocol.study,
+        "observer": observer_word(observer),
+        "citation": protocol.source,
+        "creator": { "@type": "SoftwareApplication", "name": "acuity", "softwareVersion": env!("CARGO_PKG_VERSION") },
+        "keywords": ["psychophysics", "image quality", observer_word(observer)],
+        "variableMeasured": variables,
+    })
+}
+
+/// Creates a folder that only its owner may enter, and the folders above it.
+pub(crate) fn create_private_folder(folder: &Path) -> Result<(), ExperimentError> {
+    DirBuilder::new()
+        .recursive(true)
+        .mode(0o700)
+        .create(folder)
+        .map_err(ExperimentError::io("create", folder))
+}
+
+pub(crate) fn has_entries(folder: &Path) -> Result<bool, ExperimentError> {
+    let mut entries = fs::read_dir(folder).map_err(ExperimentError::io("read", folder))?;
+    Ok(entries.next().is_some())
+}

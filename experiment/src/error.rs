@@ -1,0 +1,107 @@
+//! What can go wrong with a session, and whether it is the user's to mend.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use protocols::{InputError, ReadError, SubjectId};
+
+/// Why a session or a simulation could not be done.
+#[derive(Debug, thiserror::Error)]
+pub enum ExperimentError {
+    /// A file or the command says something that cannot be used.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// The system would not give or take a file.
+    #[error("cannot {action} \"{}\"", file.display())]
+    Io {
+        /// What was tried: `read`, `write`, `create`.
+        action: &'static str,
+        /// The file.
+        file: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// Another window runs the same session.
+    #[error("subject {subject} is in a session already: another window holds \"{}\"; close that window first", file.display())]
+    Busy {
+        /// The subject.
+        subject: SubjectId,
+        /// The locked ratings file.
+        file: PathBuf,
+    },
+    /// The images do not fit on the monitor at one image pixel per screen pixel.
+    #[error(
+        "found a screen of {} x {} pixels, expected at least {} x {} for the images and their gaps, at one image pixel for each screen pixel; use a larger monitor or a smaller stimulus set",
+        found_px[0], found_px[1], needed_px[0], needed_px[1]
+    )]
+    TooSmall {
+        /// The size of the window.
+        found_px: [u32; 2],
+        /// The size that the images need.
+        needed_px: [u32; 2],
+    },
+    /// The window did not become as large as the monitor.
+    #[error(
+        "found a window of {} x {} pixels on a monitor of {} x {}, expected it to fill the monitor; is a window manager running on this display, and no other window in front?",
+        window_px[0], window_px[1], monitor_px[0], monitor_px[1]
+    )]
+    NotFullScreen {
+        /// The size of the window.
+        window_px: [u32; 2],
+        /// The size of the monitor.
+        monitor_px: [u32; 2],
+    },
+    /// The window could not be opened.
+    #[error(
+        "no window could be opened ({reason}); a session needs an X11 display (is DISPLAY set?) with OpenGL 2 or later"
+    )]
+    Window {
+        /// What the window system said.
+        reason: String,
+    },
+    /// The model of colour vision refused the images.
+    #[error("ColorVideoVDP could not judge the stimulus {stimulus}: {reason}")]
+    Vision {
+        /// The image.
+        stimulus: String,
+        /// What it said.
+        reason: String,
+    },
+    /// The session machine did not come to an end; a fault of the program.
+    #[error(
+        "the simulated session of subject {subject} did not come to an end; this is a fault of the program"
+    )]
+    Stuck {
+        /// The observer.
+        subject: SubjectId,
+    },
+}
+
+impl ExperimentError {
+    /// Whether the input or the command is wrong (exit code 2), and not the system (exit code 1).
+    pub fn is_input(&self) -> bool {
+        matches!(self, Self::Input(_))
+    }
+
+    pub(crate) fn io(action: &'static str, file: &Path) -> impl FnOnce(io::Error) -> Self {
+        let file = file.to_owned();
+        move |source| Self::Io {
+            action,
+            file,
+            source,
+        }
+    }
+}
+
+impl From<ReadError> for ExperimentError {
+    fn from(error: ReadError) -> Self {
+        match error {
+            ReadError::Input(input) => Self::Input(input),
+            ReadError::Io { file, source } => Self::Io {
+                action: "read",
+                file,
+                source,
+            },
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! How good each image looks to a published model of colour vision.
+//!
+//! ColorVideoVDP compares every image with the ten anchor and gives a quality in JOD (just-objectionable
+//! differences): 10 for no visible difference, and one less for each difference that 75% of people would
+//! call worse. A study's scale has its own ends, so the qualities are stretched onto it: the zero anchor
+//! lies at its lowest rating, the ten anchor at its highest.
+//!
+//! Source: Mantiuk, Hanji, Ashraf, Asano & Chapiro (2024), "ColorVideoVDP: A visual difference predictor
+//! for image, video and display distortions", ACM Transactions on Graphics 43(4).
+
+use std::collections::BTreeMap;
+
+use colorvideovdp::{
+    Color, Cvvdp, DisplayModel, Execution, Geometry, Image, Options, Photometry, Prediction,
+};
+use protocols::{InputError, StimulusId, Study};
+use rayon::prelude::*;
+
+use crate::{ExperimentError, ScreenImage, StimulusSet};
+
+/// The contrast of a display in a dark room, as in ColorVideoVDP's own `standard_4k`.
+const DISPLAY_CONTRAST: f64 = 1000.0;
+/// Nothing else lights the screen.
+const AMBIENT_LX: f64 = 0.0;
+
+/// What the model of vision says of one image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quality {
+    /// Against the ten anchor, in just-objectionable differences; 10 is perfect.
+    pub jod: f64,
+    /// The same on the study's scale: the anchors lie at its ends.
+    pub on_scale: f64,
+}
+
+/// The quality of every image of the study.
+///
+/// # Errors
+///
+/// The images cannot be judged, or the model sees no difference between the anchors.
+pub fn qualities(
+    study: &Study,
+    set: &StimulusSet,
+) -> Result<BTreeMap<StimulusId, Quality>, ExperimentError> {
+    let plan = &study.protocol.stimuli;
+    let ten = set.image(&plan.ten_anchor())?;
+    let metric = metric(study, ten.size_px).map_err(refused(&plan.ten_anchor()))?;
+    let reference = coded_image(ten).map_err(refused(&plan.ten_anchor()))?;
+    let jods: BTreeMap<&StimulusId, f64> = set
+        .images()
+        .par_iter()
+        .map(|(id, image)| {
+            let judged = coded_image(image)
+                .and_then(|test| metric.predict_image(&test, &reference, Color::Srgb));
+            let prediction: Prediction = judged.map_err(refused(id))?;
+            Ok((id, f64::from(prediction.jod)))
+        })
+        .collect::<Result<_, ExperimentError>>()?;
+
+    let at = |id: &StimulusId| jods.get(id).copied().unwrap_or(f64::NAN);
+    let (worst, best) = (at(&plan.zero_anchor()), at(&plan.ten_anchor()));
+    // Below a thousandth of a JOD the stretched scale would be rounding errors.
+    if best - worst < 1e-3 || !(best - worst).is_finite() {
+        let found = format!("the zero anchor at {worst} JOD and the ten anchor at {best} JOD");
+        let expected = "a zero anchor that looks worse than the ten anchor";
+        return Err(InputError::new(&study.path, found, expected)
+            .at("field stimuli.anchors")
+            .into());
+    }
+    let scale = study.protocol.session.scale;
+    let (lowest, highest) = (f64::from(scale.lowest), f64::from(scale.highest));
+    let stretched = |jod: f64| lowest + (highest - lowest) * (jod - worst) / (best - worst);
+    let quality = |(id, jod): (&StimulusId, f64)| {
+        let on_scale = stretched(jod);
+        (id.clone(), Quality { jod, on_scale })
+    };
+    Ok(jods.into_iter().map(quality).collect())
+}
+
+fn metric(study: &Study, size_px: [u32; 2]) -> colorvideovdp::Result<Cvvdp> {
+    let peak_cd_m2 = study.protocol.simulation.peak_luminance_cd_m2;
+    let photometry = Photometry::new(peak_cd_m2, DISPLAY_CONTRAST, AMBIENT_LX, 0.0, 1.0)?;
+    let size = size_px.map(|pixels| pixels as usize);
+    let geometry = Geometry::from_ppd(size, study.protocol.viewing.pixels_per_degree())?;
+    let display = DisplayModel::new("monitor of the study", photometry, geometry, "sRGB");
+    let options = Options::default().with_execution(Execution::SingleThread);
+    Cvvdp::new(display?, options)
+}
+
+fn coded_image(image: &ScreenImage) -> colorvideovdp::Result<Image> {
+    let [width, height] = image.size_px.map(|pixels| pixels as usize);
+    let values = image.rgb.iter().map(|&byte| f32::from(byte) / 255.0);
+    Image::new(width, height, 3, values.collect())
+}
+
+fn refused(id: &StimulusId) -> impl Fn(colorvideovdp::Error) -> ExperimentError {
+    let stimulus = id.to_string();
+    move |error| ExperimentError::Vision {
+        stimulus: stimulus.clone(),
+        reason: error.to_string(),
+    }
+}

@@ -1,0 +1,139 @@
+//! The ratings of one session on disk: appended row by row, never rewritten.
+//!
+//! A row is one `write_all`, then `fsync`; only then may the next trial begin. So a crash can tear the
+//! last line, but never one that the session went on from: the torn line is cut off when the session is
+//! resumed. The file is locked while it is open.
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{Seek as _, SeekFrom, Write as _};
+use std::os::unix::fs::OpenOptionsExt as _;
+use std::path::{Path, PathBuf};
+
+use protocols::rating::{RatingRow, header_line, read_ratings};
+use protocols::{DataSet, InputError, StimulusPlan};
+
+use crate::sidecar::SessionKey;
+use crate::{ExperimentError, Trial};
+
+/// An open ratings file.
+#[derive(Debug)]
+pub(crate) struct RatingsLog {
+    file: File,
+    path: PathBuf,
+    rated: usize,
+}
+
+impl RatingsLog {
+    /// Opens the ratings of a session, whose trials are `trials`, and locks them.
+    pub(crate) fn open(
+        data_set: &DataSet,
+        key: &SessionKey,
+        trials: &[Trial],
+    ) -> Result<Self, ExperimentError> {
+        let path = data_set.ratings_path(&key.subject_id, key.session_id, key.task());
+        let mut file = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .create(true)
+            .truncate(false)
+            .mode(0o600)
+            .open(&path)
+            .map_err(ExperimentError::io("open", &path))?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => {
+                let subject = key.subject_id.clone();
+                return Err(ExperimentError::Busy {
+                    subject,
+                    file: path,
+                });
+            }
+            Err(TryLockError::Error(error)) => {
+                return Err(ExperimentError::io("lock", &path)(error));
+            }
+        }
+        let factors = StimulusPlan::factors();
+        let found = read_ratings(&path, &factors)?;
+        check_order(&path, &found.rows, key, trials)?;
+        let header = (found.whole_bytes == 0).then(|| header_line(&factors));
+        mend(&mut file, found.whole_bytes, header.as_deref())
+            .and_then(|()| File::open(data_set.data_folder())?.sync_all())
+            .map_err(ExperimentError::io("write", &path))?;
+        Ok(Self {
+            file,
+            path,
+            rated: found.rows.len(),
+        })
+    }
+
+    /// How many trials are on disk.
+    pub(crate) fn rated(&self) -> usize {
+        self.rated
+    }
+
+    /// The file.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes one row; it is on disk when this returns.
+    pub(crate) fn append(&mut self, row: &RatingRow) -> Result<(), ExperimentError> {
+        self.file
+            .write_all(row.to_line().as_bytes())
+            .and_then(|()| self.file.sync_data())
+            .map_err(ExperimentError::io("write", &self.path))?;
+        self.rated += 1;
+        Ok(())
+    }
+}
+
+/// Cuts off what lies beyond the whole lines, writes the header of a file that has none, and goes to the
+/// end.
+fn mend(file: &mut File, whole_bytes: u64, header: Option<&str>) -> std::io::Result<()> {
+    file.set_len(whole_bytes)?;
+    file.seek(SeekFrom::End(0))?;
+    file.write_all(header.unwrap_or_default().as_bytes())?;
+    file.sync_all()
+}
+
+/// Checks that the rows are the beginning of this session in its order.
+fn check_order(
+    path: &Path,
+    rows: &[RatingRow],
+    key: &SessionKey,
+    trials: &[Trial],
+) -> Result<(), InputError> {
+    if rows.len() > trials.len() {
+        let found = format!("{} rows", rows.len());
+        return Err(InputError::new(
+            path,
+            found,
+            format!("at most the {} trials of the protocol", trials.len()),
+        ));
+    }
+    for (line, (row, trial)) in (2..).zip(rows.iter().zip(trials)) {
+        let is_same_session = row.subject_id == key.subject_id
+            && row.session_id == key.session_id
+            && row.observer == key.observer
+            && row.pilot == key.pilot_speed.is_some();
+        let is_same_trial = row.trial_id == trial.trial_id
+            && row.phase == trial.phase
+            && row.stimulus_id == trial.stimulus_id
+            && row.repetition == trial.repetition
+            && row.levels == trial.levels;
+        if !(is_same_session && is_same_trial) {
+            let found = format!(
+                "subject {}, session {}, trial {}, stimulus {}",
+                row.subject_id, row.session_id, row.trial_id, row.stimulus_id
+            );
+            let expected = format!(
+                "subject {}, session {}, trial {}, stimulus {} (the subject's own order)",
+                key.subject_id, key.session_id, trial.trial_id, trial.stimulus_id
+            );
+            return Err(InputError::new(path, found, expected)
+                .at(format!("line {line}"))
+                .remedy("the file was changed or belongs to another protocol: restore it, or take another subject code"));
+        }
+    }
+    Ok(())
+}

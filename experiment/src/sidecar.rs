@@ -1,0 +1,187 @@
+//! The sidecar of a ratings file: what the rows do not say of their session.
+//!
+//! It is written before the first rating, and again when a sitting ends. A sitting without an end was
+//! cut off: by a crash, or by the mains.
+
+use std::fs;
+use std::path::Path;
+
+use protocols::{
+    InputError, Observer, ReadError, Sha256Digest, Study, SubjectId, write_atomically,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::{Ending, ExperimentError, FrameSummary};
+
+/// What the times in the ratings are, in the words that the data can bear.
+pub(crate) const TIMING_SOURCE: &str = "Onset and offset are software times after the buffer swap \
+(submitted, never seen on the screen); the duration error is within one frame plus the logged missed \
+frames; the onset of light was not measured.";
+/// The same for a simulated session.
+pub(crate) const VIRTUAL_TIMING: &str = "Virtual clock of a simulated session, 60 frames a second from \
+1970-01-01T00:00:00Z; nothing was shown.";
+
+/// Which session a file belongs to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct SessionKey {
+    pub(crate) subject_id: SubjectId,
+    pub(crate) session_id: u32,
+    pub(crate) observer: Observer,
+    /// How much faster than the protocol says; `None` for a session that counts.
+    pub(crate) pilot_speed: Option<f64>,
+}
+
+impl SessionKey {
+    /// The task in the file's name.
+    pub(crate) fn task(&self) -> &'static str {
+        match self.pilot_speed {
+            Some(_) => "pilot",
+            None => "rating",
+        }
+    }
+}
+
+/// The sidecar.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Sidecar {
+    pub(crate) study: String,
+    #[serde(flatten)]
+    pub(crate) key: SessionKey,
+    pub(crate) task: String,
+    pub(crate) acuity_version: String,
+    pub(crate) protocol_sha256: Sha256Digest,
+    pub(crate) manifest_sha256: Sha256Digest,
+    pub(crate) order_seed: u64,
+    pub(crate) timing_source: String,
+    /// Bias and gain of a simulated observer.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) model: Option<ModelTraits>,
+    pub(crate) sittings: Vec<Sitting>,
+}
+
+/// What makes one simulated observer differ from the next.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ModelTraits {
+    pub(crate) seed: u64,
+    pub(crate) bias: f64,
+    pub(crate) gain: f64,
+}
+
+/// From opening the window to closing it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Sitting {
+    pub(crate) started_at: String,
+    pub(crate) first_trial_id: usize,
+    pub(crate) ended_at: Option<String>,
+    pub(crate) ending: Option<String>,
+    pub(crate) station: Option<Station>,
+    pub(crate) frames: Option<Frames>,
+    /// How often the window lost the keyboard while a trial ran.
+    #[serde(default)]
+    pub(crate) focus_losses: u32,
+}
+
+/// The computer and its screen.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Station {
+    pub(crate) operating_system: String,
+    pub(crate) opengl_renderer: String,
+    pub(crate) window_px: [u32; 2],
+    pub(crate) monitor_px: [u32; 2],
+    pub(crate) pixels_per_point: f32,
+}
+
+/// The frames with a test image.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Frames {
+    pub(crate) measured: usize,
+    pub(crate) median_ms: f64,
+    pub(crate) p99_ms: f64,
+    pub(crate) longest_ms: f64,
+    pub(crate) missed: u32,
+}
+
+impl From<FrameSummary> for Frames {
+    fn from(summary: FrameSummary) -> Self {
+        let milliseconds = |seconds: f64| (seconds * 1e6).round() / 1e3;
+        Self {
+            measured: summary.intervals,
+            median_ms: milliseconds(summary.median_s),
+            p99_ms: milliseconds(summary.p99_s),
+            longest_ms: milliseconds(summary.longest_s),
+            missed: summary.missed,
+        }
+    }
+}
+
+pub(crate) fn ending_word(ending: Ending) -> String {
+    match ending {
+        Ending::Complete => "complete".to_owned(),
+        Ending::Stopped => "stopped".to_owned(),
+    }
+}
+
+impl Sidecar {
+    /// The sidecar of a session without sittings.
+    pub(crate) fn new(study: &Study, manifest_sha256: &Sha256Digest, key: &SessionKey) -> Self {
+        let timing_source = match key.observer {
+            Observer::Person => TIMING_SOURCE,
+            Observer::Simulated => VIRTUAL_TIMING,
+        };
+        Self {
+            study: study.protocol.study.clone(),
+            key: key.clone(),
+            task: key.task().to_owned(),
+            acuity_version: env!("CARGO_PKG_VERSION").to_owned(),
+            protocol_sha256: study.sha256.clone(),
+            manifest_sha256: manifest_sha256.clone(),
+            order_seed: study.protocol.session.order_seed,
+            timing_source: timing_source.to_owned(),
+            model: None,
+            sittings: Vec::new(),
+        }
+    }
+
+    /// Reads the sidecar of a session that is to be resumed, and checks that nothing has changed since.
+    pub(crate) fn read_same_session(path: &Path, expected: &Self) -> Result<Self, ExperimentError> {
+        let kind = "the sidecar of a ratings file (JSON)";
+        let text =
+            fs::read_to_string(path).map_err(|error| ReadError::from_io(path, kind, error))?;
+        let found: Self = serde_json::from_str(&text)
+            .map_err(|error| InputError::new(path, error.to_string(), kind))?;
+        let agreements = [
+            ("study", found.study == expected.study),
+            ("subject_id", found.key == expected.key),
+            (
+                "protocol_sha256",
+                found.protocol_sha256 == expected.protocol_sha256,
+            ),
+            (
+                "manifest_sha256",
+                found.manifest_sha256 == expected.manifest_sha256,
+            ),
+        ];
+        match agreements.into_iter().find(|(_, is_same)| !is_same) {
+            None => Ok(found),
+            Some((field, _)) => Err(InputError::new(
+                path,
+                "a session that was begun with other values",
+                "the protocol, the stimulus set and the --pilot speed with which it was begun",
+            )
+            .at(format!("field {field}"))
+            .remedy("resume with the same files, or take another subject code")
+            .into()),
+        }
+    }
+
+    /// Writes the sidecar, whole or not at all.
+    pub(crate) fn write(&self, path: &Path) -> Result<(), ExperimentError> {
+        let to_error = ExperimentError::io("write", path);
+        let mut text = match serde_json::to_string_pretty(self) {
+            Ok(text) => text,
+            Err(error) => return Err(to_error(error.into())),
+        };
+        text.push('\n');
+        write_atomically(path, text.as_bytes()).map_err(ExperimentError::io("write", path))
+    }
+}

@@ -1,0 +1,378 @@
+//! The session machine, event by event.
+
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+use experiment::{Button, Ending, Event, Key, Picture, Rules, Screen, Session, Trial};
+use protocols::rating::Phase;
+use protocols::{Layout, Scale};
+
+const FLANKING: Rules = Rules {
+    layout: Layout::Flanking,
+    exposure_s: 2.0,
+    pause_s: 0.5,
+    scale: Scale {
+        lowest: 0,
+        highest: 10,
+    },
+};
+
+fn trial(index: u32, phase: Phase) -> Trial {
+    Trial {
+        trial_id: index + 1,
+        phase,
+        stimulus_id: format!("image-{index}").try_into().unwrap(),
+        repetition: 1,
+        levels: Vec::new(),
+    }
+}
+
+/// One practice trial and two of the study.
+fn three_trials() -> Vec<Trial> {
+    vec![
+        trial(0, Phase::Practice),
+        trial(1, Phase::Test),
+        trial(2, Phase::Test),
+    ]
+}
+
+/// A session on a screen with a constant frame time.
+struct Screening {
+    session: Session,
+    now_s: f64,
+    frame_s: f64,
+}
+
+impl Screening {
+    fn new(rules: Rules) -> Self {
+        Self::resumed(rules, 0)
+    }
+
+    fn resumed(rules: Rules, rated: usize) -> Self {
+        let session = Session::new(three_trials(), rated, rules);
+        let mut screening = Self {
+            session,
+            now_s: 100.0,
+            frame_s: 1.0 / 60.0,
+        };
+        screening.frames(2);
+        screening
+    }
+
+    fn on(&mut self, event: Event) {
+        self.session.on(event, self.now_s);
+    }
+
+    fn frames(&mut self, count: u32) {
+        for _ in 0..count {
+            self.now_s += self.frame_s;
+            self.on(Event::Frame);
+        }
+    }
+
+    fn key(&mut self, key: Key) {
+        self.on(Event::Key(key));
+        self.frames(2);
+    }
+
+    fn type_all(&mut self, text: &str) {
+        for character in text.chars() {
+            self.key(Key::Character(character));
+        }
+    }
+
+    fn click(&mut self, button: Button) {
+        self.on(Event::Press(Some(button)));
+        self.on(Event::Release(Some(button)));
+    }
+
+    fn saved(&mut self) {
+        self.on(Event::Saved);
+        self.frames(2);
+    }
+
+    /// Frames until `is_there` or half a minute has passed.
+    fn until(&mut self, is_there: impl Fn(Screen) -> bool) {
+        let end_s = self.now_s + 30.0;
+        while !is_there(self.session.screen()) {
+            assert!(self.now_s < end_s, "stuck at {:?}", self.session.screen());
+            self.frames(1);
+        }
+    }
+
+    fn until_exposure(&mut self) {
+        self.until(|screen| matches!(screen, Screen::Exposure(..)));
+    }
+
+    /// The scale, submitted.
+    fn until_scale(&mut self) {
+        self.until(|screen| screen == Screen::Rating);
+        self.frames(1);
+    }
+}
+
+#[test]
+fn a_session_goes_from_the_instructions_through_every_trial_to_the_thanks() {
+    let mut screening = Screening::new(FLANKING);
+    assert_eq!(screening.session.screen(), Screen::Instructions);
+    screening.click(Button::Continue);
+    for index in 0..3 {
+        if index == 1 {
+            assert_eq!(screening.session.screen(), Screen::PracticeOver);
+            screening.key(Key::Character(' '));
+        }
+        assert_eq!(screening.session.screen(), Screen::Blank);
+        screening.until_exposure();
+        let shown = Screen::Exposure(index, Picture::Flanked);
+        assert_eq!(screening.session.screen(), shown);
+        screening.until_scale();
+        screening.now_s += 1.5;
+        screening.click(Button::Rating(7));
+        let answer = *screening.session.to_save().unwrap();
+        assert_eq!(
+            (answer.trial, answer.rating, answer.missed_frames),
+            (index, 7, 0)
+        );
+        assert!((answer.response_time_s - 1.5).abs() < 1e-9);
+        screening.saved();
+    }
+    assert_eq!(screening.session.screen(), Screen::Thanks);
+    assert_eq!(screening.session.ending(), None);
+    screening.key(Key::Enter);
+    assert_eq!(screening.session.ending(), Some(Ending::Complete));
+}
+
+#[test]
+fn the_exposure_ends_with_the_frame_nearest_to_its_time() {
+    for frame_s in [1.0 / 144.0, 1.0 / 60.0, 0.03, 0.07] {
+        let mut screening = Screening::new(FLANKING);
+        screening.frame_s = frame_s;
+        screening.click(Button::Continue);
+        // Until the frame time is known, it is taken to be 1/60 s: measure it on the first pause.
+        screening.until_scale();
+        screening.click(Button::Rating(1));
+        let exposure_s = screening.session.to_save().unwrap().exposure_submitted_s;
+        assert!(
+            (exposure_s - 2.0).abs() <= 0.5 * frame_s + 1e-9,
+            "{frame_s}: {exposure_s}"
+        );
+    }
+}
+
+#[test]
+fn a_late_frame_of_the_exposure_is_counted() {
+    let mut screening = Screening::new(FLANKING);
+    screening.click(Button::Continue);
+    screening.until_exposure();
+    screening.frames(10);
+    screening.now_s += 0.02;
+    screening.frames(10);
+    screening.until_scale();
+    screening.click(Button::Rating(1));
+    assert_eq!(screening.session.to_save().unwrap().missed_frames, 1);
+    let summary = screening.session.frame_clock().summary().unwrap();
+    assert_eq!(summary.missed, 1);
+    assert!((summary.longest_s - (0.02 + 1.0 / 60.0)).abs() < 1e-9);
+}
+
+#[test]
+fn a_rating_during_the_exposure_is_not_taken() {
+    let mut screening = Screening::new(FLANKING);
+    screening.click(Button::Continue);
+    screening.until_exposure();
+    screening.frames(20);
+    screening.click(Button::Rating(3));
+    screening.type_all("3");
+    screening.key(Key::Enter);
+    assert!(matches!(screening.session.screen(), Screen::Exposure(0, _)));
+    screening.until_scale();
+    assert_eq!(screening.session.typed(), "");
+    assert_eq!(screening.session.to_save(), None);
+}
+
+#[test]
+fn a_click_begun_during_the_exposure_does_not_count() {
+    let mut screening = Screening::new(FLANKING);
+    screening.click(Button::Continue);
+    screening.until_exposure();
+    screening.frames(20);
+    screening.on(Event::Press(Some(Button::Rating(3))));
+    screening.until_scale();
+    screening.on(Event::Release(Some(Button::Rating(3))));
+    assert_eq!(screening.session.to_save(), None);
+}
+
+#[test]
+fn a_click_before_the_scale_was_submitted_does_not_count() {
+    let mut screening = Screening::new(FLANKING);
+    screening.click(Button::Continue);
+    screening.until(|screen| screen == Screen::Rating);
+    screening.click(Button::Rating(3));
+    screening.frames(1);
+    assert_eq!(screening.session.to_save(), None);
+    screening.click(Button::Rating(3));
+    assert_eq!(screening.session.to_save().unwrap().rating, 3);
+}
+
+#[test]
+fn a_click_that_slides_to_another_rating_is_no_answer() {
+    let mut screening = Screening::new(FLANKING);
+    screening.click(Button::Continue);
+    screening.until_scale();
+    screening.on(Event::Press(Some(Button::Rating(3))));
+    screening.on(Event::Release(Some(Button::Rating(4))));
+    screening.on(Event::Press(Some(Button::Rating(3))));
+    screening.on(Event::Release(None));
+    screening.on(Event::Release(Some(Button::Rating(3))));
+    assert_eq!(screening.session.to_save(), None);
+}
+
+#[test]
+fn nothing_is_preselected() {
+    let mut screening = Screening::new(FLANKING);
+    screening.click(Button::Continue);
+    screening.until_scale();
+    screening.key(Key::Enter);
+    screening.key(Key::Character(' '));
+    screening.frames(1000);
+    assert_eq!(screening.session.screen(), Screen::Rating);
+    assert_eq!(screening.session.to_save(), None);
+}
+
+#[test]
+fn ten_is_typed_as_one_and_nought_and_what_is_off_the_scale_cannot_be_typed() {
+    let mut screening = Screening::new(FLANKING);
+    screening.click(Button::Continue);
+    screening.until_scale();
+    screening.type_all("x-12");
+    assert_eq!(screening.session.typed(), "1");
+    screening.key(Key::Backspace);
+    screening.type_all("10.05");
+    assert_eq!(screening.session.typed(), "10");
+    screening.key(Key::Enter);
+    assert_eq!(screening.session.to_save().unwrap().rating, 10);
+}
+
+#[test]
+fn a_scale_below_zero_is_typed_with_a_minus() {
+    let scale = Scale {
+        lowest: -3,
+        highest: 3,
+    };
+    let mut screening = Screening::new(Rules { scale, ..FLANKING });
+    screening.click(Button::Continue);
+    screening.until_scale();
+    screening.type_all("-");
+    screening.key(Key::Enter);
+    assert_eq!(screening.session.to_save(), None);
+    screening.type_all("42");
+    screening.key(Key::Enter);
+    assert_eq!(screening.session.to_save().unwrap().rating, -2);
+}
+
+#[test]
+fn the_next_trial_waits_until_the_rating_is_saved() {
+    let mut screening = Screening::new(FLANKING);
+    screening.click(Button::Continue);
+    screening.until_scale();
+    screening.click(Button::Rating(5));
+    screening.frames(1000);
+    screening.click(Button::Rating(6));
+    screening.key(Key::Escape);
+    assert_eq!(screening.session.screen(), Screen::Blank);
+    assert_eq!(screening.session.to_save().unwrap().rating, 5);
+    assert_eq!(screening.session.rated(), 0);
+    screening.saved();
+    assert_eq!(screening.session.rated(), 1);
+}
+
+#[test]
+fn escape_asks_and_an_interrupted_exposure_is_shown_again_from_its_beginning() {
+    let mut screening = Screening::new(FLANKING);
+    screening.click(Button::Continue);
+    screening.until_exposure();
+    screening.frames(60);
+    screening.key(Key::Escape);
+    assert_eq!(screening.session.screen(), Screen::ConfirmStop);
+    screening.frames(1000);
+    assert_eq!(screening.session.screen(), Screen::ConfirmStop);
+    screening.click(Button::Continue);
+    assert_eq!(screening.session.screen(), Screen::Blank);
+    screening.until_scale();
+    screening.click(Button::Rating(2));
+    let answer = screening.session.to_save().unwrap();
+    assert!((answer.exposure_submitted_s - 2.0).abs() < 0.02);
+    assert_eq!((answer.trial, answer.missed_frames), (0, 0));
+}
+
+#[test]
+fn escape_on_the_scale_keeps_the_exposure_that_was_seen() {
+    let mut screening = Screening::new(FLANKING);
+    screening.click(Button::Continue);
+    screening.until_scale();
+    screening.key(Key::Escape);
+    screening.click(Button::Rating(2));
+    assert_eq!(screening.session.screen(), Screen::ConfirmStop);
+    screening.key(Key::Escape);
+    assert_eq!(screening.session.screen(), Screen::Rating);
+    screening.click(Button::Rating(2));
+    assert!(screening.session.to_save().is_some());
+}
+
+#[test]
+fn a_session_that_is_stopped_keeps_its_ratings_and_goes_no_further() {
+    let mut screening = Screening::new(FLANKING);
+    screening.click(Button::Continue);
+    screening.until_scale();
+    screening.click(Button::Rating(2));
+    screening.saved();
+    screening.key(Key::Escape);
+    screening.click(Button::Stop);
+    assert_eq!(screening.session.ending(), Some(Ending::Stopped));
+    assert_eq!(screening.session.rated(), 1);
+    screening.frames(1000);
+    screening.key(Key::Enter);
+    assert_eq!(screening.session.ending(), Some(Ending::Stopped));
+}
+
+#[test]
+fn a_resumed_session_goes_on_with_the_next_trial() {
+    let mut screening = Screening::resumed(FLANKING, 2);
+    assert_eq!(screening.session.screen(), Screen::Instructions);
+    screening.click(Button::Continue);
+    screening.until_exposure();
+    assert_eq!(
+        screening.session.screen(),
+        Screen::Exposure(2, Picture::Flanked)
+    );
+
+    let mut between = Screening::resumed(FLANKING, 1);
+    between.click(Button::Continue);
+    assert_eq!(between.session.screen(), Screen::PracticeOver);
+
+    let complete = Screening::resumed(FLANKING, 3);
+    assert_eq!(complete.session.screen(), Screen::Thanks);
+}
+
+#[test]
+fn a_sequence_shows_zero_anchor_test_image_and_ten_anchor_one_after_another() {
+    let mut screening = Screening::new(Rules {
+        layout: Layout::Sequence,
+        ..FLANKING
+    });
+    screening.click(Button::Continue);
+    for picture in [Picture::ZeroAnchor, Picture::Test, Picture::TenAnchor] {
+        assert_eq!(screening.session.screen(), Screen::Blank);
+        screening.until_exposure();
+        assert_eq!(screening.session.screen(), Screen::Exposure(0, picture));
+        let began_s = screening.now_s;
+        screening.until(|screen| !matches!(screen, Screen::Exposure(..)));
+        assert!((screening.now_s - began_s - 2.0).abs() < 0.02);
+    }
+    screening.until_scale();
+    screening.click(Button::Rating(2));
+    let exposure_s = screening.session.to_save().unwrap().exposure_submitted_s;
+    assert!(
+        (exposure_s - 2.0).abs() < 0.02,
+        "that of the test image alone: {exposure_s}"
+    );
+}

@@ -1,0 +1,213 @@
+//! What holds in the session machine whatever happens, judged by a plain record of the frames.
+
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+use experiment::{Answer, Button, Event, Key, Picture, Rules, Screen, Session, Trial};
+use proptest::prelude::*;
+use protocols::rating::Phase;
+use protocols::{Layout, Scale};
+
+const EXPOSURE_S: f64 = 0.2;
+const LONGEST_FRAME_S: f64 = 0.05;
+const SCALE: Scale = Scale {
+    lowest: 0,
+    highest: 10,
+};
+
+#[derive(Clone, Copy, Debug)]
+enum Happening {
+    Frames(u32, f64),
+    Press(Option<Button>),
+    Release(Option<Button>),
+    Key(Key),
+    Saved,
+}
+
+fn button() -> impl Strategy<Value = Option<Button>> {
+    prop_oneof![
+        6 => (-1..12).prop_map(|rating| Some(Button::Rating(rating))),
+        3 => Just(Some(Button::Continue)),
+        1 => Just(Some(Button::Stop)).prop_filter("rarely", |_| true),
+        1 => Just(None),
+    ]
+}
+
+fn key() -> impl Strategy<Value = Key> {
+    prop_oneof![
+        4 => Just(Key::Enter),
+        1 => Just(Key::Escape),
+        1 => Just(Key::Backspace),
+        6 => "[0-9 -]".prop_map(|text| Key::Character(text.chars().next().unwrap())),
+    ]
+}
+
+/// Happenings in groups, so that clicks and typed numbers are frequent.
+fn happenings() -> impl Strategy<Value = Vec<Happening>> {
+    let frames = || {
+        (1..30_u32, 0.001..LONGEST_FRAME_S).prop_map(|(count, dt_s)| Happening::Frames(count, dt_s))
+    };
+    let click =
+        button().prop_map(|button| vec![Happening::Press(button), Happening::Release(button)]);
+    let group = prop_oneof![
+        8 => frames().prop_map(|frames| vec![frames]),
+        4 => click,
+        1 => button().prop_map(|button| vec![Happening::Press(button)]),
+        1 => button().prop_map(|button| vec![Happening::Release(button)]),
+        3 => key().prop_map(|key| vec![Happening::Key(key)]),
+        3 => Just(vec![Happening::Saved]),
+    ];
+    prop::collection::vec(group, 0..300).prop_map(|groups| groups.concat())
+}
+
+/// What was drawn and submitted, written down without any knowledge of the machine's states.
+#[derive(Default)]
+struct Record {
+    now_s: f64,
+    drawn: Option<Screen>,
+    /// Every submitted frame since the last screen that was no part of a trial.
+    submitted: Vec<(f64, Screen)>,
+    pressed_s: Option<(f64, Option<Button>)>,
+    answers: Vec<Answer>,
+}
+
+impl Record {
+    fn frame(&mut self, session: &mut Session, dt_s: f64) {
+        self.now_s += dt_s;
+        if let Some(screen) = self.drawn {
+            self.submitted.push((self.now_s, screen));
+        }
+        session.on(Event::Frame, self.now_s);
+        self.drawn = Some(session.screen());
+    }
+
+    /// When the frames of the last run of `is_it` began, and when the first frame after it came.
+    fn last_run(&self, is_it: impl Fn(Screen) -> bool) -> Option<(f64, Option<f64>)> {
+        let last = self
+            .submitted
+            .iter()
+            .rposition(|&(_, screen)| is_it(screen))?;
+        let before = self.submitted[..last]
+            .iter()
+            .rposition(|&(_, screen)| !is_it(screen));
+        let first = before.map_or(0, |before| before + 1);
+        let after_s = self.submitted.get(last + 1).map(|&(at_s, _)| at_s);
+        Some((self.submitted[first].0, after_s))
+    }
+
+    fn check_answer(&self, answer: &Answer, by_click: Option<Button>, picture: Picture) {
+        assert_eq!(answer.trial, self.answers.len(), "in order, none twice");
+        assert!(SCALE.contains(answer.rating));
+        let (onset_s, offset_s) = self
+            .last_run(|screen| screen == Screen::Exposure(answer.trial, picture))
+            .unwrap();
+        let exposure_s = offset_s.unwrap() - onset_s;
+        assert_eq!(answer.exposure_submitted_s, exposure_s);
+        assert!(
+            exposure_s >= EXPOSURE_S - 1.5 * LONGEST_FRAME_S,
+            "a whole exposure, not {exposure_s} s"
+        );
+        let (scale_s, _) = self.last_run(|screen| screen == Screen::Rating).unwrap();
+        assert_eq!(answer.response_time_s, self.now_s - scale_s);
+        if let Some(released) = by_click {
+            let (pressed_s, pressed) = self.pressed_s.unwrap();
+            assert!(pressed_s >= scale_s, "pressed before the scale was there");
+            assert_eq!(
+                (pressed, released),
+                (Some(released), Button::Rating(answer.rating))
+            );
+        }
+    }
+}
+
+fn check(happenings: &[Happening], layout: Layout) -> Result<usize, TestCaseError> {
+    let phases = [Phase::Practice, Phase::Test, Phase::Test];
+    let trials: Vec<Trial> = (1..)
+        .zip(phases)
+        .map(|(trial_id, phase)| Trial {
+            trial_id,
+            phase,
+            stimulus_id: "image".to_owned().try_into().unwrap(),
+            repetition: 1,
+            levels: Vec::new(),
+        })
+        .collect();
+    let rules = Rules {
+        layout,
+        exposure_s: EXPOSURE_S,
+        pause_s: 0.05,
+        scale: SCALE,
+    };
+    let picture = match layout {
+        Layout::Flanking => Picture::Flanked,
+        Layout::Sequence => Picture::Test,
+    };
+    let mut session = Session::new(trials, 0, rules);
+    let mut record = Record::default();
+    for &happening in happenings {
+        let waiting = session.to_save().copied();
+        let ended = session.ending();
+        let mut by_click = None;
+        match happening {
+            Happening::Frames(count, dt_s) => {
+                (0..count).for_each(|_| record.frame(&mut session, dt_s))
+            }
+            Happening::Press(button) => {
+                session.on(Event::Press(button), record.now_s);
+                record.pressed_s = Some((record.now_s, button));
+            }
+            Happening::Release(button) => {
+                session.on(Event::Release(button), record.now_s);
+                by_click = button;
+            }
+            Happening::Key(key) => session.on(Event::Key(key), record.now_s),
+            Happening::Saved => {
+                session.on(Event::Saved, record.now_s);
+                record.answers.extend(waiting);
+                prop_assert_eq!(session.to_save(), None);
+            }
+        }
+        match (waiting, session.to_save()) {
+            (None, Some(answer)) => record.check_answer(answer, by_click, picture),
+            (Some(before), after) if !matches!(happening, Happening::Saved) => {
+                prop_assert_eq!(after, Some(&before), "an answer waits until it is saved");
+                prop_assert_eq!(session.screen(), Screen::Blank);
+            }
+            _ => {}
+        }
+        prop_assert_eq!(session.rated(), record.answers.len());
+        if let Screen::Exposure(trial, _) = session.screen() {
+            prop_assert_eq!(trial, record.answers.len());
+        }
+        if ended.is_some() {
+            prop_assert_eq!(session.ending(), ended);
+        }
+    }
+    Ok(record.answers.len())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn whatever_happens_every_rating_follows_a_whole_exposure_of_its_image(happenings in happenings()) {
+        check(&happenings, Layout::Flanking)?;
+    }
+
+    #[test]
+    fn the_same_holds_for_a_sequence(happenings in happenings()) {
+        check(&happenings, Layout::Sequence)?;
+    }
+}
+
+#[test]
+fn the_random_happenings_reach_ratings_often_enough_to_judge_them() {
+    use proptest::strategy::ValueTree as _;
+    use proptest::test_runner::TestRunner;
+    let mut runner = TestRunner::deterministic();
+    let mut rated = 0;
+    for _ in 0..200 {
+        let tree = happenings().new_tree(&mut runner).unwrap();
+        rated += check(&tree.current(), Layout::Flanking).unwrap();
+    }
+    assert!(rated > 50, "only {rated} ratings in 200 sessions");
+}
