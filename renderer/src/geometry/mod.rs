@@ -1,0 +1,32 @@
+//! Where a ray meets a shape: geometry only, no colour.
+//!
+//! World axes are right-handed with z up, lengths in metres. Directions are unit vectors. Every shape is
+//! closed or flat and is seen from both sides; surface coordinates are in metres along the surface.
+
+pub(crate) mod bounds;
+pub(crate) mod cone;
+pub(crate) mod cuboid;
+pub(crate) mod cylinder;
+pub(crate) mod disc;
+pub(crate) mod frame;
+pub(crate) mod ground;
+pub(crate) mod hierarchy;
+pub(crate) mod ray;
+pub(crate) mod rectangle;
+pub(crate) mod shape;
+pub(crate) mod sphere;
+pub(crate) mod vector;
+
+pub(crate) use bounds::Bounds;
+pub(crate) use cone::Cone;
+pub(crate) use cuboid::Cuboid;
+pub(crate) use cylinder::Cylinder;
+pub(crate) use disc::Disc;
+pub(crate) use frame::Frame;
+pub(crate) use ground::Ground;
+pub(crate) use hierarchy::Hierarchy;
+pub(crate) use ray::{Hit, Part, Ray, Span, SurfacePoint};
+pub(crate) use rectangle::Rectangle;
+pub(crate) use shape::Shape;
+pub(crate) use sphere::Sphere;
+pub(crate) use vector::Vector;

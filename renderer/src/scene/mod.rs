@@ -1,0 +1,103 @@
+//! A scene: what is in front of the camera, read from a TOML file.
+//!
+//! # Units and axes
+//!
+//! Lengths are in metres, angles in degrees, wavelengths in nm. World axes are right-handed, z up.
+//!
+//! # How bright things are
+//!
+//! The unit of light is *the illuminance that makes a perfect white diffuser as bright as the display's
+//! white* (Y = 1). A distant light states its illuminance on a surface that faces it; a point light states
+//! its intensity, the illuminance at 1 m: a surface at a distance of d metres, turned away by θ, receives
+//! `intensity · cos θ / d²`. Emittances are scaled to Y = 1 first, so that a light's colour does not change
+//! how bright it is. There is no other exposure.
+//!
+//! Ambient light is that of an evenly bright upper half of the sphere that nothing blocks: a surface whose
+//! normal rises by the sine s receives `illuminance · (1 + s) / 2`.
+//!
+//! # Materials
+//!
+//! | table | what it does |
+//! |---|---|
+//! | `[diffuse.NAME]` | Lambert's law with a spectral `reflectance` |
+//! | `[glossy.NAME]` | the same, and `highlight · (cos α)^exponent` of each light, α from the mirrored direction (Phong 1975); with `refractive_index` also a clear coat that mirrors by Fresnel's formula, the body taking the rest |
+//! | `[mirror.NAME]` | a mirror of a spectral `reflectance` |
+//!
+//! `diffuse` and `glossy` may have `checker` or `stripes`: a second reflectance in every other square or
+//! stripe along the surface. A reflectance is the name of an entry of `[reflectances]`, the name of a
+//! measured one (`colorchecker red`), or control points `[[nm, value], …]` with straight lines between them
+//! and level ends.
+//!
+//! Surface coordinates are in metres: on a sphere along the equator and the meridian; on a cylinder or cone
+//! round the axis and up the side; on a box or rectangle along its edges; on the ground x and y.
+//!
+//! # Simplifications
+//!
+//! Lights cast hard shadows, mirrors do not pass light on to diffuse surfaces, nothing is transparent. A
+//! ray that leaves the scene finds black.
+
+pub(crate) mod camera;
+mod file;
+pub(crate) mod light;
+pub(crate) mod material;
+mod palette;
+mod reader;
+mod shapes;
+mod table;
+
+use std::path::Path;
+
+use protocols::{Quadrature, ReadError};
+
+use crate::RendererError;
+use crate::geometry::Hierarchy;
+use crate::scene_sampler::SceneSampler;
+use crate::spectra::Spectrum;
+use camera::Camera;
+use light::{Ambient, Light};
+use material::Material;
+
+/// A scene that can be rendered: read whole, checked whole.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    pub(crate) camera: Camera,
+    pub(crate) shapes: Hierarchy,
+    /// For each shape the place of its material in `materials`.
+    pub(crate) material_of_shape: Vec<u16>,
+    pub(crate) materials: Vec<Material>,
+    /// The reflectances that materials refer to.
+    pub(crate) reflectances: Vec<Spectrum>,
+    pub(crate) lights: Vec<Light>,
+    pub(crate) ambient: Option<Ambient>,
+}
+
+impl Scene {
+    /// Reads a scene file.
+    ///
+    /// # Errors
+    ///
+    /// [`RendererError::Input`] if the file is missing, is not TOML, has an unknown or missing key, or says
+    /// what cannot be; [`RendererError::Io`] if the system would not give it.
+    pub fn read(path: &Path) -> Result<Self, RendererError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|error| ReadError::from_io(path, "a scene (TOML)", error))?;
+        Self::from_toml(path, &text)
+    }
+
+    /// Reads the text of a scene; `file` is only named in errors.
+    ///
+    /// # Errors
+    ///
+    /// [`RendererError::Input`], as for [`Scene::read`].
+    pub fn from_toml(file: &Path, text: &str) -> Result<Self, RendererError> {
+        Ok(reader::scene_from_toml(file, text)?)
+    }
+
+    /// The scene ready to be sampled, carrying light at the wavelengths of `quadrature`.
+    ///
+    /// `size_px` is the width and height of the picture; its pixels are square and the camera's field of
+    /// view is its height.
+    pub fn sampler(&self, quadrature: Quadrature, size_px: [u32; 2]) -> SceneSampler<'_> {
+        SceneSampler::new(self, quadrature, size_px)
+    }
+}

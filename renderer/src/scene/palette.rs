@@ -1,0 +1,284 @@
+//! The materials and reflectances of a scene, by name.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use protocols::InputError;
+
+use super::file::{CheckerTable, SceneFile, SpectrumValue, StripeDirection, StripesTable};
+use super::material::{
+    Body, Highlight, Material, Mirror, Pattern, PatternLayout, ReflectanceIndex,
+};
+use super::table::Table;
+use crate::spectra::{Spectrum, measured};
+
+/// The materials of a scene and what they refer to.
+#[derive(Debug, Default)]
+pub(super) struct Palette {
+    pub(super) reflectances: Vec<Spectrum>,
+    pub(super) materials: Vec<Material>,
+    /// For each name the place in `materials`.
+    material_of_name: BTreeMap<String, u16>,
+}
+
+/// The reflectances that the file names, and the file for errors.
+struct Known<'file> {
+    file: &'file Path,
+    by_name: BTreeMap<&'file str, Spectrum>,
+}
+
+impl Palette {
+    /// Checks and collects the materials.
+    pub(super) fn new(file: &Path, scene: &SceneFile) -> Result<Self, InputError> {
+        let known = Known::new(file, scene)?;
+        let mut palette = Self::default();
+        for (name, table) in &scene.diffuse {
+            let place = known.table("diffuse", name);
+            let pattern = (table.checker.as_ref(), table.stripes.as_ref());
+            let body = palette.body(&known, place, &table.reflectance, pattern)?;
+            let material = Material {
+                body: Some(body),
+                highlight: None,
+                mirror: None,
+            };
+            palette.add(place, name, material)?;
+        }
+        for (name, table) in &scene.glossy {
+            let place = known.table("glossy", name);
+            let pattern = (table.checker.as_ref(), table.stripes.as_ref());
+            let body = palette.body(&known, place, &table.reflectance, pattern)?;
+            let refractive_index = table.refractive_index.map(|refractive_index| {
+                place.number_within("refractive_index", refractive_index, (1.0, 4.0))
+            });
+            let coat = refractive_index
+                .transpose()?
+                .map(|refractive_index| Mirror::Coat { refractive_index });
+            let material = Material {
+                body: Some(body),
+                highlight: Some(highlight(place, table.highlight, table.exponent)?),
+                mirror: coat,
+            };
+            palette.add(place, name, material)?;
+        }
+        for (name, table) in &scene.mirror {
+            let place = known.table("mirror", name);
+            let spectrum = known.reflectance(place, "reflectance", &table.reflectance)?;
+            let peak = spectrum.peak();
+            let reflectance = palette.index(place, spectrum)?;
+            let highlight = match (table.highlight, table.exponent) {
+                (None, None) => None,
+                (Some(strength), Some(exponent)) => Some(highlight(place, strength, exponent)?),
+                (Some(_), None) => return Err(alone(place, "exponent", "highlight")),
+                (None, Some(_)) => return Err(alone(place, "highlight", "exponent")),
+            };
+            let material = Material {
+                body: None,
+                highlight,
+                mirror: Some(Mirror::Metal { reflectance, peak }),
+            };
+            palette.add(place, name, material)?;
+        }
+        Ok(palette)
+    }
+
+    /// The place of the material that an object names.
+    pub(super) fn material(&self, object: Table<'_>, name: &str) -> Result<u16, InputError> {
+        let known = self.material_of_name.get(name).copied();
+        known.ok_or_else(|| {
+            let names: Vec<&str> = self.material_of_name.keys().map(String::as_str).collect();
+            let expected = format!("one of the scene's materials ({})", names.join(", "));
+            object
+                .error("material", format!("\"{name}\""), expected)
+                .remedy("name one of these or add a table for it, such as [diffuse.NAME]")
+        })
+    }
+
+    fn add(&mut self, place: Table<'_>, name: &str, material: Material) -> Result<(), InputError> {
+        let index = u16::try_from(self.materials.len()).map_err(|_| too_many(place))?;
+        self.materials.push(material);
+        match self.material_of_name.insert(name.to_owned(), index) {
+            None => Ok(()),
+            Some(_) => Err(place.error(
+                "(the table's name)",
+                format!("a second material \"{name}\""),
+                "each name once among diffuse, glossy and mirror",
+            )),
+        }
+    }
+
+    fn index(
+        &mut self,
+        place: Table<'_>,
+        spectrum: Spectrum,
+    ) -> Result<ReflectanceIndex, InputError> {
+        let known = self
+            .reflectances
+            .iter()
+            .position(|known| *known == spectrum);
+        let index = known.unwrap_or(self.reflectances.len());
+        if known.is_none() {
+            self.reflectances.push(spectrum);
+        }
+        ReflectanceIndex::try_from(index).map_err(|_| too_many(place))
+    }
+
+    fn body(
+        &mut self,
+        known: &Known<'_>,
+        place: Table<'_>,
+        reflectance: &SpectrumValue,
+        pattern: (Option<&CheckerTable>, Option<&StripesTable>),
+    ) -> Result<Body, InputError> {
+        let (layout, field, other) = match pattern {
+            (None, None) => {
+                let spectrum = known.reflectance(place, "reflectance", reflectance)?;
+                let reflectance = self.index(place, spectrum)?;
+                return Ok(Body {
+                    reflectance,
+                    pattern: None,
+                });
+            }
+            (Some(checker), None) => {
+                let size_m = place.length_m("checker.size_m", checker.size_m)?;
+                let layout = PatternLayout::Checker { size_m };
+                (layout, "checker.reflectance", &checker.reflectance)
+            }
+            (None, Some(stripes)) => {
+                let size_m = place.length_m("stripes.size_m", stripes.size_m)?;
+                let layout = match stripes.across {
+                    StripeDirection::U => PatternLayout::StripesAcrossU { size_m },
+                    StripeDirection::V => PatternLayout::StripesAcrossV { size_m },
+                };
+                (layout, "stripes.reflectance", &stripes.reflectance)
+            }
+            (Some(_), Some(_)) => {
+                let found = "stripes beside a checker";
+                return Err(place.error("stripes", found, "one of the two"));
+            }
+        };
+        let spectrum = known.reflectance(place, "reflectance", reflectance)?;
+        let other = known.reflectance(place, field, other)?;
+        let reflectance = self.index(place, spectrum)?;
+        let other = self.index(place, other)?;
+        Ok(Body {
+            reflectance,
+            pattern: Some(Pattern { layout, other }),
+        })
+    }
+}
+
+impl<'file> Known<'file> {
+    fn new(file: &'file Path, scene: &'file SceneFile) -> Result<Self, InputError> {
+        let mut known = Self {
+            file,
+            by_name: BTreeMap::new(),
+        };
+        for (name, value) in &scene.reflectances {
+            let place = known.table("reflectances", name);
+            if measured::reflectance(name).is_some() {
+                let found = "the name of a measured reflectance";
+                return Err(place.error("(the entry's name)", found, "a name of its own"));
+            }
+            // Only measured names: an entry cannot refer to another one.
+            let spectrum = match value {
+                SpectrumValue::Named(measured) => {
+                    measured::reflectance(measured).ok_or_else(|| {
+                        let expected = format!(
+                            "control points, or a measured reflectance ({})",
+                            measured::names().join(", ")
+                        );
+                        place.error("(its value)", format!("\"{measured}\""), expected)
+                    })?
+                }
+                SpectrumValue::Points(points) => {
+                    reflectance_of_points(place, "(its value)", points)?
+                }
+            };
+            known.by_name.insert(name, spectrum);
+        }
+        Ok(known)
+    }
+
+    fn table(&self, kind: &'file str, name: &'file str) -> Table<'file> {
+        Table {
+            file: self.file,
+            kind,
+            number: None,
+            name: Some(name),
+        }
+    }
+
+    fn reflectance(
+        &self,
+        place: Table<'_>,
+        field: &str,
+        value: &SpectrumValue,
+    ) -> Result<Spectrum, InputError> {
+        match value {
+            SpectrumValue::Points(points) => reflectance_of_points(place, field, points),
+            SpectrumValue::Named(name) => {
+                let known = self.by_name.get(name.as_str()).cloned();
+                let known = known.or_else(|| measured::reflectance(name));
+                known.ok_or_else(|| {
+                    let own: Vec<&str> = self.by_name.keys().copied().collect();
+                    let expected = format!(
+                        "an entry of [reflectances] ({}) or a measured one ({})",
+                        own.join(", "),
+                        measured::names().join(", ")
+                    );
+                    place.error(field, format!("\"{name}\""), expected)
+                })
+            }
+        }
+    }
+}
+
+/// The spectrum of control points with values from 0 to `most`.
+pub(super) fn spectrum_of_points(
+    place: Table<'_>,
+    field: &str,
+    points: &[[f64; 2]],
+    most: f64,
+) -> Result<Spectrum, InputError> {
+    if points.is_empty() {
+        return Err(place.error(field, "no control points", "at least one [nm, value]"));
+    }
+    for &[nm, value] in points {
+        if !(100.0..=10_000.0).contains(&nm) {
+            let expected = "wavelengths from 100 to 10000 nm";
+            return Err(place.error(field, format!("{nm} nm"), expected));
+        }
+        if !(0.0..=most).contains(&value) {
+            let expected = format!("values from 0 to {most}");
+            return Err(place.error(field, format!("{value} at {nm} nm"), expected));
+        }
+    }
+    if let Some(pair) = points.windows(2).find(|pair| pair[0][0] >= pair[1][0]) {
+        let found = format!("{} nm before {} nm", pair[0][0], pair[1][0]);
+        return Err(place.error(field, found, "wavelengths that rise"));
+    }
+    Ok(Spectrum::of_points(points.to_vec()))
+}
+
+fn reflectance_of_points(
+    place: Table<'_>,
+    field: &str,
+    points: &[[f64; 2]],
+) -> Result<Spectrum, InputError> {
+    spectrum_of_points(place, field, points, 1.0)
+}
+
+fn highlight(place: Table<'_>, strength: f64, exponent: f64) -> Result<Highlight, InputError> {
+    Ok(Highlight {
+        strength: place.number_within("highlight", strength, (0.0, 100.0))?,
+        exponent: place.number_within("exponent", exponent, (1.0, 1e6))?,
+    })
+}
+
+fn alone(place: Table<'_>, missing: &str, given: &str) -> InputError {
+    place.error(missing, "nothing", format!("a number, as {given} is given"))
+}
+
+fn too_many(place: Table<'_>) -> InputError {
+    place.error("(the table)", "more than 65536 of its kind", "fewer")
+}

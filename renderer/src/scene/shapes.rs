@@ -1,0 +1,201 @@
+//! The objects of a scene: each table checked and made a shape.
+
+use std::path::Path;
+
+use protocols::InputError;
+
+use super::file::{
+    BoxTable, ConeTable, CylinderTable, DiscTable, GroundTable, RectangleTable, SceneFile,
+    SphereTable,
+};
+use super::palette::Palette;
+use super::table::Table;
+use crate::geometry::{Cone, Cuboid, Cylinder, Disc, Ground, Rectangle, Shape, Sphere, Vector};
+
+/// All shapes, and for each the place of its material.
+pub(super) fn shapes(
+    file: &Path,
+    scene: &SceneFile,
+    palette: &Palette,
+) -> Result<(Vec<Shape>, Vec<u16>), InputError> {
+    let mut objects = Objects {
+        file,
+        palette,
+        shapes: Vec::new(),
+        materials: Vec::new(),
+    };
+    objects.add("sphere", &scene.sphere)?;
+    objects.add("box", &scene.cuboid)?;
+    objects.add("cylinder", &scene.cylinder)?;
+    objects.add("cone", &scene.cone)?;
+    objects.add("disc", &scene.disc)?;
+    objects.add("rectangle", &scene.rectangle)?;
+    objects.add("ground", &scene.ground)?;
+    if objects.shapes.is_empty() {
+        return Err(InputError::new(
+            file,
+            "no object",
+            "at least one sphere, box, cylinder, cone, disc, rectangle or ground",
+        ));
+    }
+    Ok((objects.shapes, objects.materials))
+}
+
+struct Objects<'file> {
+    file: &'file Path,
+    palette: &'file Palette,
+    shapes: Vec<Shape>,
+    materials: Vec<u16>,
+}
+
+impl Objects<'_> {
+    fn add<T: ObjectTable>(&mut self, kind: &str, tables: &[T]) -> Result<(), InputError> {
+        for (number, object) in (1..).zip(tables) {
+            let table = Table {
+                file: self.file,
+                kind,
+                number: Some(number),
+                name: object.name(),
+            };
+            let material = self.palette.material(table, object.material())?;
+            self.shapes.push(object.shape(table)?);
+            self.materials.push(material);
+        }
+        Ok(())
+    }
+}
+
+/// A table of the file that is an object.
+trait ObjectTable {
+    fn name(&self) -> Option<&str>;
+    fn material(&self) -> &str;
+    /// The shape, once its numbers have been checked; errors name `table`.
+    fn shape(&self, table: Table<'_>) -> Result<Shape, InputError>;
+}
+
+impl ObjectTable for SphereTable {
+    fn name(&self) -> Option<&str> {
+        self.name.as_deref()
+    }
+
+    fn material(&self) -> &str {
+        &self.material
+    }
+
+    fn shape(&self, table: Table<'_>) -> Result<Shape, InputError> {
+        Ok(Shape::Sphere(Sphere {
+            center: table.place("center_m", self.center_m)?,
+            radius_m: table.length_m("radius_m", self.radius_m)?,
+        }))
+    }
+}
+
+impl ObjectTable for BoxTable {
+    fn name(&self) -> Option<&str> {
+        self.name.as_deref()
+    }
+
+    fn material(&self) -> &str {
+        &self.material
+    }
+
+    fn shape(&self, table: Table<'_>) -> Result<Shape, InputError> {
+        let center = table.place("center_m", self.center_m)?;
+        let [x, y, z] = self.size_m;
+        let size = Vector::new(
+            table.length_m("size_m", x)?,
+            table.length_m("size_m", y)?,
+            table.length_m("size_m", z)?,
+        );
+        let rotation_deg =
+            table.number_within("rotation_deg", self.rotation_deg, (-360.0, 360.0))?;
+        Ok(Shape::Cuboid(Cuboid::new(center, size, rotation_deg)))
+    }
+}
+
+impl ObjectTable for CylinderTable {
+    fn name(&self) -> Option<&str> {
+        self.name.as_deref()
+    }
+
+    fn material(&self) -> &str {
+        &self.material
+    }
+
+    fn shape(&self, table: Table<'_>) -> Result<Shape, InputError> {
+        let [base, top] = table.two_places(("base_m", self.base_m), ("top_m", self.top_m))?;
+        let radius_m = table.length_m("radius_m", self.radius_m)?;
+        Ok(Shape::Cylinder(Cylinder::between(base, top, radius_m)))
+    }
+}
+
+impl ObjectTable for ConeTable {
+    fn name(&self) -> Option<&str> {
+        self.name.as_deref()
+    }
+
+    fn material(&self) -> &str {
+        &self.material
+    }
+
+    fn shape(&self, table: Table<'_>) -> Result<Shape, InputError> {
+        let [base, apex] = table.two_places(("base_m", self.base_m), ("apex_m", self.apex_m))?;
+        let radius_m = table.length_m("radius_m", self.radius_m)?;
+        Ok(Shape::Cone(Cone::between(base, apex, radius_m)))
+    }
+}
+
+impl ObjectTable for DiscTable {
+    fn name(&self) -> Option<&str> {
+        self.name.as_deref()
+    }
+
+    fn material(&self) -> &str {
+        &self.material
+    }
+
+    fn shape(&self, table: Table<'_>) -> Result<Shape, InputError> {
+        Ok(Shape::Disc(Disc::new(
+            table.place("center_m", self.center_m)?,
+            table.direction("normal", self.normal)?,
+            table.length_m("radius_m", self.radius_m)?,
+        )))
+    }
+}
+
+impl ObjectTable for RectangleTable {
+    fn name(&self) -> Option<&str> {
+        self.name.as_deref()
+    }
+
+    fn material(&self) -> &str {
+        &self.material
+    }
+
+    fn shape(&self, table: Table<'_>) -> Result<Shape, InputError> {
+        let corner = table.place("corner_m", self.corner_m)?;
+        let unit_u = table.direction("edge_u_m", self.edge_u_m)?;
+        let unit_v = table.direction("edge_v_m", self.edge_v_m)?;
+        if unit_u.dot(unit_v).abs() > 1e-6 {
+            let found = format!("{:?}", self.edge_v_m);
+            return Err(table.error("edge_v_m", found, "an edge at right angles to edge_u_m"));
+        }
+        let (edge_u, edge_v) = (self.edge_u_m.into(), self.edge_v_m.into());
+        Ok(Shape::Rectangle(Rectangle::new(corner, edge_u, edge_v)))
+    }
+}
+
+impl ObjectTable for GroundTable {
+    fn name(&self) -> Option<&str> {
+        self.name.as_deref()
+    }
+
+    fn material(&self) -> &str {
+        &self.material
+    }
+
+    fn shape(&self, table: Table<'_>) -> Result<Shape, InputError> {
+        let height_m = table.number_within("height_m", self.height_m, (-1e6, 1e6))?;
+        Ok(Shape::Ground(Ground { height_m }))
+    }
+}
