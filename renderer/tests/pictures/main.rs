@@ -1,5 +1,4 @@
-//! The screen tree, from samplers that are known in closed form to pixels.
-
+//! From samplers that are known in closed form to the files of a stimulus set.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 #![expect(
     clippy::cast_possible_truncation,
@@ -8,6 +7,9 @@
 
 mod analytic;
 mod estimates;
+mod files;
 mod prefix;
 mod reconstruction;
+mod set;
+mod small_study;
 mod stops;

@@ -1,0 +1,165 @@
+//! What one image is made from, and whether it can be made.
+
+use std::num::NonZeroUsize;
+use std::path::Path;
+
+use protocols::{
+    Channel, ChannelGroup, InputError, PerChannel, Quadrature, RayCount, RefinementDriver,
+    StimulusPlan, TreePlan,
+};
+
+use crate::account::RayAccount;
+use crate::cell::Cell;
+use crate::refine::TracePlan;
+use crate::screen_tree::Reach;
+
+/// One image: its size, its ray counts and how its tree is made.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ImageRequest {
+    /// How many rays make A.
+    pub rays_a: RayCount,
+    /// How many rays make C1 and C2.
+    pub rays_c1c2: RayCount,
+    /// Below these depths of the tree a channel is neither shaded nor stored: p, q and r of section 3.3.
+    pub stop_depths: PerChannel<Option<u32>>,
+    /// Width and height.
+    pub size_px: [u32; 2],
+    /// The seed of the sample positions.
+    pub seed: u64,
+    /// At which wavelengths light is carried.
+    pub quadrature: Quadrature,
+    /// How the tree is refined.
+    pub tree: TreePlan,
+    /// How many threads; one for each core if not said. The image is the same with any number.
+    pub threads: Option<NonZeroUsize>,
+}
+
+impl ImageRequest {
+    /// The request for an image of a plan.
+    pub fn from_plan(plan: &StimulusPlan, rays_a: RayCount, rays_c1c2: RayCount) -> Self {
+        Self {
+            rays_a,
+            rays_c1c2,
+            stop_depths: PerChannel::default(),
+            size_px: plan.size_px,
+            seed: plan.seed,
+            quadrature: plan.quadrature,
+            tree: plan.tree.clone(),
+            threads: None,
+        }
+    }
+
+    /// How many rays make a channel.
+    pub const fn rays(&self, channel: Channel) -> RayCount {
+        match channel.group() {
+            ChannelGroup::Achromatic => self.rays_a,
+            ChannelGroup::Chromatic => self.rays_c1c2,
+        }
+    }
+
+    /// How far into the tree a channel's image goes.
+    pub fn reach(&self, channel: Channel) -> Reach {
+        Reach {
+            rays: self.rays(channel).as_usize(),
+            depth: self.stop_depths[channel].unwrap_or(Cell::DEEPEST),
+        }
+    }
+
+    /// How the tree of this image is made.
+    pub fn trace_plan(&self) -> TracePlan {
+        TracePlan {
+            seed: self.seed,
+            size_px: self.size_px,
+            min_depth: self.tree.min_depth,
+            driver: self.tree.driver,
+            stops: PerChannel::from_fn(|channel| self.reach(channel)),
+        }
+    }
+
+    /// What the image costs on its own if no depth stops a channel.
+    ///
+    /// A channel that drives alone is shaded wherever a ray goes, even beyond its own image.
+    pub fn account(&self) -> RayAccount {
+        let intersections = u64::from(self.rays_a.max(self.rays_c1c2).get());
+        let shadings = PerChannel::from_fn(|channel| {
+            let drives_alone = self.tree.driver == RefinementDriver::A && channel == Channel::A;
+            if drives_alone {
+                intersections
+            } else {
+                u64::from(self.rays(channel).get())
+            }
+        });
+        RayAccount {
+            intersections,
+            shadings,
+        }
+    }
+
+    /// Refuses a request that contradicts itself; `scene` is only named in errors.
+    ///
+    /// # Errors
+    ///
+    /// The image has no pixels or too many, a ray count does not fill the minimum depth, a depth cannot be
+    /// or a channel would go deeper than those that drive the refinement.
+    pub fn check(&self, scene: &Path) -> Result<(), InputError> {
+        let wrong = |place: &str, found: String, expected: &str| {
+            Err(InputError::new(scene, found, expected).at(place.to_owned()))
+        };
+        let [width, height] = self.size_px;
+        if !self.size_px.iter().all(|size| (1..=16_384).contains(size)) {
+            let expected = "a width and a height from 1 to 16384 pixels";
+            return wrong("size", format!("{width}x{height}"), expected);
+        }
+        let min_depth = self.tree.min_depth;
+        if !(1..=12).contains(&min_depth) {
+            return wrong(
+                "minimum depth",
+                min_depth.to_string(),
+                "a depth from 1 to 12",
+            );
+        }
+        let cells = 1_u32 << min_depth;
+        let fewest = self.rays_a.min(self.rays_c1c2);
+        if fewest.get() < cells {
+            let found = format!("{fewest} rays and a minimum depth of {min_depth} ({cells} cells)");
+            let expected = "at least one ray for each cell of the minimum depth";
+            return wrong("ray count", found, expected);
+        }
+        self.check_depths()
+            .or_else(|(found, expected)| wrong("stop depth", found, expected))
+    }
+
+    fn check_depths(&self) -> Result<(), (String, &'static str)> {
+        let depth = |channel| self.reach(channel).depth;
+        for channel in Channel::ALL {
+            let depth = depth(channel);
+            if !(1..=Cell::DEEPEST).contains(&depth) {
+                return Err((format!("{depth} for {channel}"), "a depth from 1 to 48"));
+            }
+        }
+        let of_a = depth(Channel::A);
+        let asked = [self.stop_depths.c1, self.stop_depths.c2]
+            .into_iter()
+            .flatten()
+            .max();
+        if let Some(chromatic) = asked
+            && self.tree.driver == RefinementDriver::A
+            && chromatic > of_a
+        {
+            return Err((
+                format!("{chromatic} for a chromatic channel and {of_a} for A"),
+                "chromatic channels no deeper than A, which says where to go",
+            ));
+        }
+        if of_a < self.tree.min_depth {
+            return Err((
+                format!(
+                    "{of_a} for A and a minimum depth of {}",
+                    self.tree.min_depth
+                ),
+                "A at least as deep as the minimum depth",
+            ));
+        }
+        Ok(())
+    }
+}

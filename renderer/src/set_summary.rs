@@ -1,0 +1,139 @@
+//! What a stimulus set cost, and what stopping channels saved.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use protocols::{ManifestStimulus, PerChannel, RayCount, StimulusId, StimulusPlan};
+
+use crate::account::RayAccount;
+use crate::image_request::ImageRequest;
+
+/// What was made and what it cost.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SetSummary {
+    /// The folder of the set.
+    pub folder: PathBuf,
+    /// The one trace from which all images were read.
+    pub account: RayAccount,
+    /// Each image.
+    pub stimuli: Vec<StimulusSummary>,
+    /// The remarks of the manifest.
+    pub remarks: Vec<String>,
+}
+
+/// One image of the set, and what it would cost alone.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StimulusSummary {
+    /// Its name.
+    pub id: StimulusId,
+    /// How many rays made A.
+    pub rays_a: RayCount,
+    /// How many rays made C1 and C2.
+    pub rays_c1c2: RayCount,
+    /// What the image costs if it is traced alone and each channel stops at its ray count.
+    pub alone: RayAccount,
+    /// How many rectangles each channel's image was filtered from.
+    pub rectangles: PerChannel<u64>,
+    /// Pixels that had to be clipped to the sRGB gamut.
+    pub out_of_gamut_px: u32,
+}
+
+impl StimulusSummary {
+    pub(crate) fn new(stimulus: &ManifestStimulus, plan: &StimulusPlan) -> Self {
+        let request = ImageRequest::from_plan(plan, stimulus.rays_a, stimulus.rays_c1c2);
+        Self {
+            id: stimulus.id.clone(),
+            rays_a: stimulus.rays_a,
+            rays_c1c2: stimulus.rays_c1c2,
+            alone: request.account(),
+            rectangles: PerChannel::from_fn(|channel| u64::from(request.rays(channel).get())),
+            out_of_gamut_px: stimulus.out_of_gamut_px,
+        }
+    }
+}
+
+impl SetSummary {
+    /// What the images cost if each is traced alone and each channel stops at its ray count.
+    pub fn alone(&self) -> RayAccount {
+        self.stimuli.iter().map(|stimulus| stimulus.alone).sum()
+    }
+
+    /// What the images cost if each is traced alone with all channels to its largest ray count.
+    pub fn full(&self) -> RayAccount {
+        let full = |stimulus: &StimulusSummary| RayAccount::full(stimulus.alone.intersections);
+        self.stimuli.iter().map(full).sum()
+    }
+}
+
+impl fmt::Display for SetSummary {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let images = self.stimuli.len();
+        writeln!(
+            formatter,
+            "{}: {images} images and manifest.json",
+            self.folder.display()
+        )?;
+        writeln!(formatter, "one trace for all of them: {}", self.account)?;
+        writeln!(
+            formatter,
+            "\n{:<24}{:>15}{:>12}{:>12}{:>12}",
+            "", "intersections", "A", "C1", "C2"
+        )?;
+        let rows = [
+            ("spent: one trace", self.account),
+            ("each image alone", self.alone()),
+            ("and no channel stopped", self.full()),
+        ];
+        for (
+            name,
+            RayAccount {
+                intersections,
+                shadings,
+            },
+        ) in rows
+        {
+            let PerChannel { a, c1, c2 } = shadings;
+            writeln!(
+                formatter,
+                "{name:<24}{intersections:>15}{a:>12}{c1:>12}{c2:>12}"
+            )?;
+        }
+        writeln!(
+            formatter,
+            "\n{:<18}{:>10}{:>11}{:>8}{:>12}{:>9}",
+            "image alone", "shadings", "of 3 x rays", "saved", "rectangles", "clipped"
+        )?;
+        for stimulus in &self.stimuli {
+            writeln!(formatter, "{stimulus}")?;
+        }
+        let clipped = self
+            .stimuli
+            .iter()
+            .filter(|stimulus| stimulus.out_of_gamut_px > 0)
+            .count();
+        write!(
+            formatter,
+            "\n{clipped} of {images} images have pixels out of the sRGB gamut"
+        )?;
+        for remark in &self.remarks {
+            write!(formatter, "\nremark: {remark}")?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for StimulusSummary {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let spent = self.alone.total_shadings();
+        let full = 3 * self.alone.intersections;
+        let percent = 100.0 * self.alone.saved_shadings() as f64 / full as f64;
+        let PerChannel { a, c1, c2 } = self.rectangles;
+        write!(
+            formatter,
+            "{:<18}{spent:>10}{full:>11}{percent:>7.1}%{:>12}{:>9}",
+            self.id.as_str(),
+            a + c1 + c2,
+            self.out_of_gamut_px,
+        )
+    }
+}

@@ -1,0 +1,176 @@
+//! Opponent channels as an 8-bit sRGB picture, and PNG files.
+//!
+//! The transfer curve is only evaluated for the 255 steps between codes: a primary is then looked up among
+//! them, which gives the codes of [`srgb_encode`] at a tenth of its cost.
+
+use std::path::Path;
+
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder as _};
+use protocols::PerChannel;
+
+use crate::channel_image::ChannelImage;
+use crate::error::RendererError;
+use crate::opponent::linear_srgb_from_ac1c2;
+use crate::srgb::{is_out_of_srgb_gamut, srgb_encode};
+
+/// A picture as a display is given it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SrgbImage {
+    /// Width and height.
+    pub size_px: [u32; 2],
+    /// Red, green and blue of each pixel, row by row from the top.
+    pub bytes: Vec<u8>,
+    /// How many pixels had to be clipped to the gamut.
+    pub out_of_gamut_px: u32,
+}
+
+/// Turns opponent channels into sRGB codes.
+#[derive(Clone, Debug)]
+pub struct SrgbEncoder {
+    /// The least linear primary of each code from 1 to 255.
+    steps: [f64; 255],
+    /// The least and the greatest linear primary that is not clipped.
+    gamut: [f64; 2],
+}
+
+impl SrgbEncoder {
+    /// Finds the steps of the transfer curve.
+    pub fn new() -> Self {
+        let is_shown = |linear: f64| !is_out_of_srgb_gamut([linear, 0.5, 0.5]);
+        Self {
+            steps: std::array::from_fn(|place| {
+                least(0.0, 1.0, |linear| usize::from(srgb_encode(linear)) > place)
+            }),
+            gamut: [
+                least(-1.0, 0.5, is_shown),
+                -least(-2.0, -0.5, |negated| is_shown(-negated)),
+            ],
+        }
+    }
+
+    /// The picture of three channels of the same size.
+    pub fn encode(&self, channels: PerChannel<&ChannelImage>) -> SrgbImage {
+        let PerChannel { a, c1, c2 } = channels;
+        let mut bytes = Vec::with_capacity(3 * a.values().len());
+        let mut out_of_gamut_px = 0;
+        for ((&a, &c1), &c2) in a.values().iter().zip(c1.values()).zip(c2.values()) {
+            let linear = linear_srgb_from_ac1c2(PerChannel {
+                a: f64::from(a),
+                c1: f64::from(c1),
+                c2: f64::from(c2),
+            });
+            let [least, greatest] = self.gamut;
+            let is_shown = linear
+                .iter()
+                .all(|primary| (least..=greatest).contains(primary));
+            out_of_gamut_px += u32::from(!is_shown);
+            bytes.extend(linear.map(|primary| self.code(primary)));
+        }
+        SrgbImage {
+            size_px: channels.a.size_px(),
+            bytes,
+            out_of_gamut_px,
+        }
+    }
+
+    fn code(&self, linear: f64) -> u8 {
+        let steps_below = self.steps.partition_point(|&step| step <= linear);
+        u8::try_from(steps_below).unwrap_or(u8::MAX)
+    }
+}
+
+impl Default for SrgbEncoder {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The least number from `from` to `to` of which `is_beyond` holds, which must hold of all above.
+fn least(mut from: f64, mut to: f64, is_beyond: impl Fn(f64) -> bool) -> f64 {
+    loop {
+        let middle = f64::midpoint(from, to);
+        if middle <= from || middle >= to {
+            return to;
+        }
+        if is_beyond(middle) {
+            to = middle;
+        } else {
+            from = middle;
+        }
+    }
+}
+
+impl SrgbImage {
+    /// The bytes of the PNG file; `path` is only named in errors.
+    ///
+    /// # Errors
+    ///
+    /// [`RendererError::Encoding`] if the encoder refuses the image.
+    pub(crate) fn to_png(&self, path: &Path) -> Result<Vec<u8>, RendererError> {
+        let mut bytes = Vec::new();
+        let encoder =
+            PngEncoder::new_with_quality(&mut bytes, CompressionType::Fast, FilterType::Adaptive);
+        let [width, height] = self.size_px;
+        encoder
+            .write_image(&self.bytes, width, height, ExtendedColorType::Rgb8)
+            .map_err(|error| RendererError::Encoding {
+                path: path.to_owned(),
+                reason: error.to_string(),
+            })?;
+        Ok(bytes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The plain way is the transfer curve itself, for every pixel.
+    #[test]
+    fn looked_up_codes_are_those_of_the_curve() {
+        let encoder = SrgbEncoder::new();
+        for place in -20_000..=120_000 {
+            // A step that meets no code boundary exactly, over and beyond the whole range.
+            let linear = f64::from(place) * 1.000_013e-5;
+            assert_eq!(encoder.code(linear), srgb_encode(linear), "{linear}");
+        }
+    }
+
+    #[test]
+    fn clipped_pixels_are_those_out_of_gamut() {
+        let encoder = SrgbEncoder::new();
+        let values = |step: f32| (0..10_000_u16).map(|i| f32::from(i) * step).collect();
+        let [a, c1, c2] = [1.2e-4, -0.4e-4, 0.6e-4]
+            .map(|step| ChannelImage::new([100, 100], values(step)).unwrap());
+        let picture = encoder.encode(PerChannel {
+            a: &a,
+            c1: &c1,
+            c2: &c2,
+        });
+        let expected = (0..10_000)
+            .filter(|&i| {
+                is_out_of_srgb_gamut(linear_srgb_from_ac1c2(PerChannel {
+                    a: f64::from(a.values()[i]),
+                    c1: f64::from(c1.values()[i]),
+                    c2: f64::from(c2.values()[i]),
+                }))
+            })
+            .count();
+        assert!(expected > 100);
+        assert_eq!(picture.out_of_gamut_px as usize, expected);
+    }
+
+    #[test]
+    fn a_png_is_read_back_as_it_was_written() {
+        let picture = SrgbImage {
+            size_px: [7, 5],
+            bytes: (0..105).map(|place| place * 2).collect(),
+            out_of_gamut_px: 0,
+        };
+        let bytes = picture.to_png(Path::new("x.png")).unwrap();
+        let read = image::load_from_memory(&bytes).unwrap().into_rgb8();
+        assert_eq!((read.width(), read.height()), (7, 5));
+        assert_eq!(read.into_raw(), picture.bytes);
+    }
+}

@@ -1,0 +1,220 @@
+//! The stimulus set of a study: one trace, every channel image read from it, every stimulus put together.
+//!
+//! The channel image at N rays is read from the tree as it stood after N samples; a stimulus is the
+//! recombination of two of them for A and for C1 and C2. The manifest is written last: a folder without
+//! one is no set.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use protocols::{
+    Channel, Manifest, ManifestFile, ManifestStimulus, PerChannel, RayCount, RefinementDriver,
+    Sha256Digest, Stimulus, StimulusPlan, Study, write_atomically,
+};
+use rayon::prelude::*;
+
+use crate::channel_image::ChannelImage;
+use crate::error::RendererError;
+use crate::image_request::ImageRequest;
+use crate::opponent_exr;
+use crate::reconstruct::reconstruct;
+use crate::refine::{TracePlan, trace};
+use crate::sampler::Sampler;
+use crate::screen_tree::{Reach, ScreenTree};
+use crate::set_summary::{SetSummary, StimulusSummary};
+use crate::srgb_png::SrgbEncoder;
+
+const COLOR_SPACE: &str = "EXR: opponent channels A, C1, C2 of Meyer & Liu (1992), Eq. 2 on CIE 1931 2-degree \
+    tristimulus values, linear, display white D65 at (1.0001, -0.0293, 0.5537). PNG: sRGB (IEC 61966-2-1), 8 bits, \
+    white D65.";
+
+const TIED_CHANNELS: &str = "All three channels drive the refinement: stopping one of them changes the tree of the \
+    others, so that an image traced alone differs from the one here.";
+
+/// The images of one channel, by their ray counts.
+type ImagesByRays = BTreeMap<RayCount, ChannelImage>;
+
+/// Renders the stimulus set of a study into the folder `out`, from anything that can be sampled.
+///
+/// Runs in the current rayon pool; the files are the same in any. `progress` is told how much is done, and
+/// of how much.
+///
+/// # Errors
+///
+/// A file could not be made; there is then no manifest.
+pub fn render_set_of(
+    sampler: &impl Sampler,
+    scene_sha256: &Sha256Digest,
+    study: &Study,
+    out: &Path,
+    progress: &(dyn Fn(u64, u64) + Sync),
+) -> Result<SetSummary, RendererError> {
+    let plan = &study.protocol.stimuli;
+    let stimuli = plan.stimuli();
+    let traced = u64::from(plan.most_rays().get());
+    // An image takes about as long to write as this many rays to trace.
+    let rays_per_image = 5000;
+    let total = traced + rays_per_image * stimuli.len() as u64;
+    remove_manifest(out)?;
+    let tree = trace(sampler, &trace_plan(plan), &|done, _| progress(done, total));
+    let images = channel_images(&tree, plan);
+    let encoder = SrgbEncoder::new();
+    let images_done = AtomicU64::new(0);
+    let write = |stimulus: &Stimulus| {
+        let request = ImageRequest::from_plan(plan, stimulus.rays_a, stimulus.rays_c1c2);
+        let channels = recombine(&images, &request, out)?;
+        let written = write_stimulus(stimulus, channels, (&request, scene_sha256), &encoder, out)?;
+        let done = images_done.fetch_add(1, Ordering::Relaxed) + 1;
+        progress(traced + rays_per_image * done, total);
+        Ok(written)
+    };
+    let written: Result<Vec<ManifestStimulus>, RendererError> =
+        stimuli.par_iter().map(write).collect();
+    let manifest = manifest(study, scene_sha256.clone(), written?);
+    write_manifest(&manifest, out)?;
+    Ok(SetSummary {
+        folder: out.to_owned(),
+        account: tree.account(),
+        stimuli: manifest
+            .stimuli
+            .iter()
+            .map(|stimulus| StimulusSummary::new(stimulus, plan))
+            .collect(),
+        remarks: manifest.remarks,
+    })
+}
+
+/// Every channel as far as any image needs it.
+fn trace_plan(plan: &StimulusPlan) -> TracePlan {
+    let most = |rays: fn(&Stimulus) -> RayCount| {
+        let counts = plan.stimuli().iter().map(rays).max();
+        counts.unwrap_or_else(|| plan.most_rays())
+    };
+    let rays_a = most(|stimulus| stimulus.rays_a);
+    let rays_c1c2 = most(|stimulus| stimulus.rays_c1c2);
+    ImageRequest::from_plan(plan, rays_a, rays_c1c2).trace_plan()
+}
+
+fn channel_images(tree: &ScreenTree, plan: &StimulusPlan) -> PerChannel<ImagesByRays> {
+    let mut wanted: Vec<(Channel, RayCount)> = Vec::new();
+    for stimulus in plan.stimuli() {
+        let request = ImageRequest::from_plan(plan, stimulus.rays_a, stimulus.rays_c1c2);
+        wanted.extend(Channel::ALL.map(|channel| (channel, request.rays(channel))));
+    }
+    // The longest work first, so that no thread is left with it at the end.
+    wanted.sort_unstable_by(|one, other| other.1.cmp(&one.1).then(one.0.cmp(&other.0)));
+    wanted.dedup();
+    let image = |&(channel, rays): &(Channel, RayCount)| {
+        let leaves = tree.leaves(channel, Reach::rays(rays.as_usize()))?;
+        Some((channel, rays, reconstruct(&leaves, plan.size_px)))
+    };
+    let images: Vec<_> = wanted
+        .par_iter()
+        .with_max_len(1)
+        .filter_map(image)
+        .collect();
+    let mut by_rays = PerChannel::<ImagesByRays>::default();
+    for (channel, rays, image) in images {
+        by_rays[channel].insert(rays, image);
+    }
+    by_rays
+}
+
+fn recombine<'a>(
+    images: &'a PerChannel<ImagesByRays>,
+    request: &ImageRequest,
+    out: &Path,
+) -> Result<PerChannel<&'a ChannelImage>, RendererError> {
+    let find = |channel: Channel| {
+        let rays = request.rays(channel);
+        images[channel]
+            .get(&rays)
+            .ok_or_else(|| RendererError::Encoding {
+                path: out.to_owned(),
+                reason: format!("the trace holds no image of {channel} at {rays} rays"),
+            })
+    };
+    Ok(PerChannel {
+        a: find(Channel::A)?,
+        c1: find(Channel::C1)?,
+        c2: find(Channel::C2)?,
+    })
+}
+
+fn write_stimulus(
+    stimulus: &Stimulus,
+    channels: PerChannel<&ChannelImage>,
+    (request, scene_sha256): (&ImageRequest, &Sha256Digest),
+    encoder: &SrgbEncoder,
+    out: &Path,
+) -> Result<ManifestStimulus, RendererError> {
+    let write = |ending: &str, bytes: &[u8]| {
+        let name = format!("{}.{ending}", stimulus.id);
+        let path = out.join(&name);
+        write_atomically(&path, bytes).map_err(|error| RendererError::writing(&path, error))?;
+        Ok::<_, RendererError>(ManifestFile {
+            name,
+            sha256: Sha256Digest::of(bytes),
+        })
+    };
+    let path = out.join(stimulus.id.as_str());
+    let record = request.record(scene_sha256.clone());
+    let exr = write("exr", &opponent_exr::encode(channels, &record, &path)?)?;
+    let picture = encoder.encode(channels);
+    let png = write("png", &picture.to_png(&path)?)?;
+    let factors = stimulus.factors();
+    Ok(ManifestStimulus {
+        id: stimulus.id.clone(),
+        varied: factors.get("channel").cloned().unwrap_or_default(),
+        rays_a: stimulus.rays_a,
+        rays_c1c2: stimulus.rays_c1c2,
+        factors,
+        exr,
+        png,
+        out_of_gamut_px: picture.out_of_gamut_px,
+    })
+}
+
+fn manifest(study: &Study, scene_sha256: Sha256Digest, stimuli: Vec<ManifestStimulus>) -> Manifest {
+    let plan = &study.protocol.stimuli;
+    let is_tied = plan.tree.driver == RefinementDriver::All;
+    Manifest {
+        set: plan.set.clone(),
+        acuity_version: env!("CARGO_PKG_VERSION").to_owned(),
+        protocol_sha256: study.sha256.clone(),
+        scene_sha256,
+        plan: plan.clone(),
+        color_space: COLOR_SPACE.to_owned(),
+        remarks: is_tied
+            .then(|| TIED_CHANNELS.to_owned())
+            .into_iter()
+            .collect(),
+        viewing: study.protocol.viewing.into(),
+        stimuli,
+    }
+}
+
+fn write_manifest(manifest: &Manifest, out: &Path) -> Result<(), RendererError> {
+    let path = out.join(Manifest::FILE_NAME);
+    let mut text =
+        serde_json::to_string_pretty(manifest).map_err(|error| RendererError::Encoding {
+            path: path.clone(),
+            reason: error.to_string(),
+        })?;
+    text.push('\n');
+    write_atomically(&path, text.as_bytes()).map_err(|error| RendererError::writing(&path, error))
+}
+
+/// An older set is no set while its files are replaced.
+fn remove_manifest(out: &Path) -> Result<(), RendererError> {
+    let path = out.join(Manifest::FILE_NAME);
+    match fs::remove_file(&path) {
+        Err(error) if error.kind() != ErrorKind::NotFound => {
+            Err(RendererError::writing(&path, error))
+        }
+        _ => Ok(()),
+    }
+}
