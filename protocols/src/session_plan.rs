@@ -119,4 +119,25 @@ pub struct SessionTexts {
     pub highest: String,
     /// Shown last.
     pub thanks: String,
+    /// On the button that goes on.
+    #[serde(default = "continue_button")]
+    pub continue_button: String,
+    /// Asked when the subject wants to stop.
+    #[serde(default = "stop_question")]
+    pub stop_question: String,
+    /// On the button that stops.
+    #[serde(default = "stop_button")]
+    pub stop_button: String,
+}
+
+fn continue_button() -> String {
+    "Continue".to_owned()
+}
+
+fn stop_question() -> String {
+    "Stop the session? The ratings so far are kept.".to_owned()
+}
+
+fn stop_button() -> String {
+    "Stop".to_owned()
 }
