@@ -85,7 +85,6 @@ pub(crate) struct Sitting {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Station {
     pub(crate) operating_system: String,
-    pub(crate) opengl_renderer: String,
     pub(crate) window_px: [u32; 2],
     pub(crate) monitor_px: [u32; 2],
     pub(crate) pixels_per_point: f32,

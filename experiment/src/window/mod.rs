@@ -1,0 +1,73 @@
+//! The session in a full-screen window, one image pixel on one pixel of the screen.
+
+mod app;
+mod clock;
+mod gate;
+mod geometry;
+mod input;
+mod paint;
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use eframe::egui::ViewportBuilder;
+use eframe::{NativeOptions, Renderer};
+use protocols::Study;
+
+use crate::{ExperimentError, RunOptions, SessionEnd, StimulusSet};
+
+use app::SessionApp;
+use clock::Clock;
+
+/// What the window leaves behind when it is closed.
+type Outcome = Rc<RefCell<Option<Result<SessionEnd, ExperimentError>>>>;
+
+/// Runs one session in a full-screen window, or resumes it.
+///
+/// # Errors
+///
+/// The stimulus set or the ratings on disk cannot be used, another window runs the same subject, the
+/// window cannot be opened or does not fill the monitor, the images do not fit, or a rating could not be
+/// written. What was rated before an error is on disk.
+pub fn run(study: &Study, options: &RunOptions) -> Result<SessionEnd, ExperimentError> {
+    let set = StimulusSet::read(study, &options.stimuli_dir)?;
+    let clock = Clock::start();
+    let sitting = crate::sitting::Sitting::open(study, &set, options, clock.zero())?;
+    let outcome = Outcome::default();
+    let app_outcome = Rc::clone(&outcome);
+    let title = format!("{} - subject {}", study.protocol.study, options.subject);
+    let viewport = ViewportBuilder::default()
+        .with_title(&title)
+        .with_app_id("acuity")
+        .with_decorations(false)
+        .with_fullscreen(true);
+    let native = NativeOptions {
+        viewport,
+        renderer: Renderer::Glow,
+        dithering: false,
+        run_and_return: true,
+        ..NativeOptions::default()
+    };
+    let session_study = study.clone();
+    let pilot = options.pilot;
+    eframe::run_native(
+        &title,
+        native,
+        Box::new(move |creation| {
+            let context = &creation.egui_ctx;
+            let plan = session_study.protocol.session;
+            let pictures = paint::Pictures::upload(context, &set, &session_study.protocol.stimuli);
+            let app = SessionApp::new(sitting, plan, pictures, clock, pilot, app_outcome);
+            Ok(Box::new(app))
+        }),
+    )
+    .map_err(|error| ExperimentError::Window {
+        reason: error.to_string(),
+    })?;
+    let left = outcome.borrow_mut().take();
+    left.unwrap_or_else(|| {
+        Err(ExperimentError::Window {
+            reason: "it was closed by the system".to_owned(),
+        })
+    })
+}
