@@ -13,15 +13,24 @@
 
 mod anova;
 mod anova_table;
+mod apa;
 mod cell_matrix;
 mod contrasts;
 mod design;
 mod error;
+mod figure;
 mod interval;
 mod label_column;
 mod natural_order;
 mod observations;
+mod page;
+mod picture;
+mod report;
+mod results_text;
+mod sections;
 mod sphericity;
+mod study_analysis;
+mod study_ratings;
 mod table_file;
 mod tail;
 
@@ -33,6 +42,8 @@ pub use error::AnalysisError;
 pub use interval::{CellSummary, cell_summaries};
 pub use natural_order::natural_order;
 pub use observations::Observations;
+pub use report::{ReportSummary, report};
 pub use sphericity::{Mauchly, Sphericity};
+pub use study_ratings::Pilots;
 pub use table_file::{anova_of_table, read_observations};
 pub use tail::{f_tail, ln_f_tail, t_quantile};

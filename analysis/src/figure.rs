@@ -1,0 +1,284 @@
+//! Figure 10: mean rating against ray count, squares for the chromatic channels, diamonds for the achromatic
+//! one, bars within subjects.
+//!
+//! Written as SVG directly, so that the bytes depend on nothing but the numbers and the colours can follow
+//! the page. Shape, fill and line style tell the curves apart, so grey and any colour vision will do.
+
+use std::fmt::Write as _;
+
+use protocols::{ChannelGroup, RayCount, Scale};
+
+use crate::study_analysis::{ConditionMean, StudyAnalysis};
+
+/// The width of the figure, in user units.
+pub(crate) const WIDTH: f64 = 760.0;
+const HEIGHT: f64 = 470.0;
+const LEFT: f64 = 62.0;
+const RIGHT: f64 = 742.0;
+const TOP: f64 = 18.0;
+const BOTTOM: f64 = 404.0;
+/// How far the two curves stand apart, so that their bars do not cover each other.
+const DODGE: f64 = 3.5;
+
+/// The colours of a figure, as CSS values.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Palette {
+    pub(crate) ink: &'static str,
+    pub(crate) faint: &'static str,
+    pub(crate) paper: &'static str,
+    pub(crate) chromatic: &'static str,
+}
+
+impl Palette {
+    /// Black on white, vermilion (Okabe & Ito 2008) for the chromatic curve.
+    pub(crate) const PRINT: Self = Self {
+        ink: "#1a1a1a",
+        faint: "#d9d9d9",
+        paper: "#ffffff",
+        chromatic: "#c64b00",
+    };
+    /// The colours of the page that the figure stands in.
+    pub(crate) const PAGE: Self = Self {
+        ink: "var(--ink)",
+        faint: "var(--rule)",
+        paper: "var(--paper)",
+        chromatic: "var(--chromatic)",
+    };
+}
+
+/// What the figure shows.
+#[derive(Debug)]
+pub(crate) struct Figure<'a> {
+    pub(crate) analysis: &'a StudyAnalysis,
+    pub(crate) scale: Scale,
+    pub(crate) confidence: f64,
+    pub(crate) palette: Palette,
+}
+
+impl Figure<'_> {
+    /// The figure as an SVG document.
+    pub(crate) fn to_svg(&self) -> String {
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" \
+             aria-label=\"Mean rating against ray count for the achromatic and the chromatic sequence\" \
+             font-family=\"Ubuntu, 'Helvetica Neue', Helvetica, Arial, sans-serif\" font-size=\"13\">\n"
+        );
+        let paper = self.palette.paper;
+        // Writing to a `String` cannot fail, here and below.
+        _ = writeln!(
+            svg,
+            "<rect width=\"{WIDTH}\" height=\"{HEIGHT}\" style=\"fill:{paper}\"/>"
+        );
+        self.axes(&mut svg);
+        for group in ChannelGroup::ALL {
+            self.curve(&mut svg, group);
+        }
+        self.legend(&mut svg);
+        svg.push_str("</svg>\n");
+        svg
+    }
+
+    fn x(&self, rays: RayCount) -> f64 {
+        let counts = self.analysis.ray_counts();
+        let number = |rays: &RayCount| f64::from(rays.get());
+        let first = counts.first().map_or(0.0, number);
+        let last = counts.last().map_or(1.0, number);
+        let inset = 22.0;
+        let share = if last > first {
+            (number(&rays) - first) / (last - first)
+        } else {
+            0.5
+        };
+        (RIGHT - LEFT - 2.0 * inset).mul_add(share, LEFT + inset)
+    }
+
+    fn y(&self, rating: f64) -> f64 {
+        let (lowest, highest) = (f64::from(self.scale.lowest), f64::from(self.scale.highest));
+        let share = (rating - lowest) / (highest - lowest);
+        (BOTTOM - TOP).mul_add(-share, BOTTOM)
+    }
+
+    fn axes(&self, svg: &mut String) {
+        let Palette { ink, faint, .. } = self.palette;
+        let step = if self.scale.highest - self.scale.lowest > 5 {
+            2
+        } else {
+            1
+        };
+        for rating in self.scale.ratings().step_by(step) {
+            let y = self.y(f64::from(rating));
+            _ = writeln!(
+                svg,
+                "<line x1=\"{LEFT}\" y1=\"{y:.2}\" x2=\"{RIGHT}\" y2=\"{y:.2}\" style=\"stroke:{faint}\" stroke-width=\"0.8\"/>\
+                 <text x=\"{:.2}\" y=\"{:.2}\" text-anchor=\"end\" style=\"fill:{ink}\">{rating}</text>",
+                LEFT - 9.0,
+                y + 4.5
+            );
+        }
+        for rays in self.analysis.ray_counts() {
+            let x = self.x(rays);
+            _ = writeln!(
+                svg,
+                "<line x1=\"{x:.2}\" y1=\"{BOTTOM}\" x2=\"{x:.2}\" y2=\"{:.2}\" style=\"stroke:{ink}\" stroke-width=\"1\"/>\
+                 <text x=\"{x:.2}\" y=\"{:.2}\" text-anchor=\"middle\" style=\"fill:{ink}\">{rays}</text>",
+                BOTTOM + 5.0,
+                BOTTOM + 21.0
+            );
+        }
+        let (middle, centre) = (f64::midpoint(TOP, BOTTOM), f64::midpoint(LEFT, RIGHT));
+        _ = writeln!(
+            svg,
+            "<path d=\"M{LEFT},{TOP}V{BOTTOM}H{RIGHT}\" fill=\"none\" style=\"stroke:{ink}\" stroke-width=\"1\"/>\
+             <text x=\"{centre}\" y=\"{:.2}\" text-anchor=\"middle\" font-size=\"14\" style=\"fill:{ink}\">Rays for the varied channels</text>\
+             <text transform=\"translate(20 {middle}) rotate(-90)\" text-anchor=\"middle\" font-size=\"14\" style=\"fill:{ink}\">Mean rating</text>",
+            BOTTOM + 47.0
+        );
+    }
+
+    fn curve(&self, svg: &mut String, group: ChannelGroup) {
+        let style = CurveStyle::of(group, self.palette);
+        let conditions: Vec<&ConditionMean> = (self.analysis.ray_counts().into_iter())
+            .filter_map(|rays| self.analysis.condition(group, rays))
+            .collect();
+        let place = |condition: &ConditionMean| {
+            (self.x(condition.rays) + style.dodge, self.y(condition.mean))
+        };
+        let points: Vec<String> = (conditions.iter())
+            .map(|condition| place(condition))
+            .map(|(x, y)| format!("{x:.2},{y:.2}"))
+            .collect();
+        let color = style.color;
+        _ = writeln!(
+            svg,
+            "<g style=\"stroke:{color}\" stroke-width=\"1.5\" fill=\"none\">"
+        );
+        _ = writeln!(
+            svg,
+            "<polyline points=\"{}\" {}/>",
+            points.join(" "),
+            style.dash
+        );
+        for condition in &conditions {
+            if let Some(half) = condition.half_within {
+                let (x, _) = place(condition);
+                self.error_bar(svg, x, condition.mean, half);
+            }
+        }
+        for condition in &conditions {
+            let (x, y) = place(condition);
+            style.marker(svg, x, y, self.palette);
+        }
+        svg.push_str("</g>\n");
+    }
+
+    fn error_bar(&self, svg: &mut String, x: f64, mean: f64, half: f64) {
+        // Beyond the plot a bar is cut, without a cap; ratings cannot lie there.
+        let (low, high) = (f64::from(self.scale.lowest), f64::from(self.scale.highest));
+        let cap = 3.0;
+        let mut path = format!(
+            "M{x:.2},{:.2}V{:.2}",
+            self.y((mean - half).max(low)),
+            self.y((mean + half).min(high))
+        );
+        for end in [mean - half, mean + half] {
+            if (low..=high).contains(&end) {
+                _ = write!(path, "M{:.2},{:.2}h{:.2}", x - cap, self.y(end), 2.0 * cap);
+            }
+        }
+        _ = writeln!(svg, "<path d=\"{path}\" stroke-width=\"1.1\"/>");
+    }
+
+    fn legend(&self, svg: &mut String) {
+        let ink = self.palette.ink;
+        let (left, top) = (RIGHT - 318.0, BOTTOM - 84.0);
+        _ = writeln!(
+            svg,
+            "<rect x=\"{}\" y=\"{}\" width=\"326\" height=\"70\" style=\"fill:{}\"/>",
+            left - 8.0,
+            top - 13.0,
+            self.palette.paper
+        );
+        let entries = [
+            (
+                ChannelGroup::Chromatic,
+                "chromatic channels (C1, C2) varied, A held",
+            ),
+            (
+                ChannelGroup::Achromatic,
+                "achromatic channel (A) varied, C1 and C2 held",
+            ),
+        ];
+        for (row, (group, text)) in entries.into_iter().enumerate() {
+            let y = 22.0_f64.mul_add(row as f64, top);
+            let style = CurveStyle::of(group, self.palette);
+            let color = style.color;
+            _ = writeln!(
+                svg,
+                "<g style=\"stroke:{color}\" stroke-width=\"1.5\" fill=\"none\"><path d=\"M{left},{y}h32\" {}/>",
+                style.dash
+            );
+            style.marker(svg, left + 16.0, y, self.palette);
+            _ = writeln!(
+                svg,
+                "</g><text x=\"{}\" y=\"{}\" style=\"fill:{ink}\">{text}</text>",
+                left + 42.0,
+                y + 4.5
+            );
+        }
+        let y = top + 44.0;
+        let percent = self.confidence * 100.0;
+        _ = writeln!(
+            svg,
+            "<path d=\"M{0},{1}v16M{2},{1}h6M{2},{3}h6\" fill=\"none\" style=\"stroke:{ink}\" stroke-width=\"1.1\"/>\
+             <text x=\"{4}\" y=\"{5}\" style=\"fill:{ink}\">{percent}% within-subject intervals, Cousineau–Morey</text>",
+            left + 16.0,
+            y - 8.0,
+            left + 13.0,
+            y + 8.0,
+            left + 42.0,
+            y + 4.5
+        );
+    }
+}
+
+/// How a curve looks.
+struct CurveStyle {
+    group: ChannelGroup,
+    color: &'static str,
+    dash: &'static str,
+    dodge: f64,
+}
+
+impl CurveStyle {
+    fn of(group: ChannelGroup, palette: Palette) -> Self {
+        match group {
+            ChannelGroup::Chromatic => Self {
+                group,
+                color: palette.chromatic,
+                dash: "",
+                dodge: DODGE,
+            },
+            ChannelGroup::Achromatic => Self {
+                group,
+                color: palette.ink,
+                dash: "stroke-dasharray=\"5 3\"",
+                dodge: -DODGE,
+            },
+        }
+    }
+
+    /// A filled square, or an open diamond.
+    fn marker(&self, svg: &mut String, x: f64, y: f64, palette: Palette) {
+        let (path, fill) = match self.group {
+            ChannelGroup::Chromatic => (
+                format!("M{:.2},{:.2}h9v9h-9z", x - 4.5, y - 4.5),
+                self.color,
+            ),
+            ChannelGroup::Achromatic => (
+                format!("M{:.2},{y:.2}l6,-6l6,6l-6,6z", x - 6.0),
+                palette.paper,
+            ),
+        };
+        _ = writeln!(svg, "<path d=\"{path}\" style=\"fill:{fill}\"/>");
+    }
+}

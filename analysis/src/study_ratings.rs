@@ -1,0 +1,361 @@
+//! The ratings of a study as they stand on disk: every session file of its data set, checked against the
+//! protocol.
+//!
+//! Practice trials are never kept, trial runs only when asked for; people and simulated observers are never
+//! mixed.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use protocols::rating::{Phase, RatingRow, read_ratings};
+use protocols::{
+    DataSet, InputError, Observer, ReadError, Sha256Digest, StimulusId, StimulusPlan, Study,
+    SubjectId,
+};
+
+use crate::AnalysisError;
+
+/// Whether trial runs are analysed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pilots {
+    /// They are left out, and said.
+    LeftOut,
+    /// They are analysed like sessions, and said.
+    Included,
+}
+
+/// Every rating of a study that counts, and where it came from.
+#[derive(Clone, Debug)]
+pub(crate) struct StudyRatings {
+    /// The folder of the session files.
+    pub(crate) folder: PathBuf,
+    /// Who rated.
+    pub(crate) observer: Observer,
+    /// The ratings of test trials, by subject, session and trial.
+    pub(crate) rows: Vec<RatingRow>,
+    /// One record for each file that holds a rating that counts.
+    pub(crate) sessions: Vec<SessionRecord>,
+    /// Files of trial runs that were left out.
+    pub(crate) pilots_left_out: Vec<String>,
+    /// What the reader of the report must know.
+    pub(crate) warnings: Vec<String>,
+}
+
+/// One session file.
+#[derive(Clone, Debug)]
+pub(crate) struct SessionRecord {
+    pub(crate) file_name: String,
+    pub(crate) sha256: Sha256Digest,
+    pub(crate) subject: SubjectId,
+    pub(crate) session: u32,
+    pub(crate) started_at: String,
+    pub(crate) n_rated: usize,
+    pub(crate) missed_frames: u32,
+    pub(crate) trials_with_missed_frames: usize,
+    /// The largest difference of the exposure submitted from the one requested.
+    pub(crate) largest_exposure_error_s: f64,
+    pub(crate) median_response_time_s: f64,
+    pub(crate) is_pilot: bool,
+}
+
+impl StudyRatings {
+    /// Reads the data set of `study` in `data_dir`.
+    ///
+    /// # Errors
+    ///
+    /// No ratings, a file that is not one of this study's, a rating that contradicts the protocol or
+    /// another one, people and simulated observers side by side.
+    pub(crate) fn read(
+        study: &Study,
+        data_dir: &Path,
+        pilots: Pilots,
+    ) -> Result<Self, AnalysisError> {
+        let folder = DataSet::new(data_dir, &study.protocol.study).data_folder();
+        let mut ratings = Self {
+            folder: folder.clone(),
+            observer: Observer::Person,
+            rows: Vec::new(),
+            sessions: Vec::new(),
+            pilots_left_out: Vec::new(),
+            warnings: Vec::new(),
+        };
+        let mut observers: BTreeMap<&str, (Observer, String)> = BTreeMap::new();
+        for path in ratings_files(&folder, study)? {
+            let rows = ratings.read_file(study, &path, pilots)?;
+            for row in &rows {
+                observers
+                    .entry(observer_name(row.observer))
+                    .or_insert_with(|| (row.observer, file_name(&path)));
+            }
+            ratings.rows.extend(rows);
+        }
+        match observers.into_values().collect::<Vec<_>>().as_slice() {
+            [] => return Err(ratings.nothing_to_analyse(study).into()),
+            [(observer, _)] => ratings.observer = *observer,
+            [(_, person), (_, simulated), ..] => {
+                let found = format!(
+                    "ratings of people ({person}) and of simulated observers ({simulated})"
+                );
+                return Err(
+                    InputError::new(folder, found, "one kind of observer in a data set")
+                        .remedy("move one kind to a data set of its own")
+                        .into(),
+                );
+            }
+        }
+        ratings.rows.sort_by(|left, right| {
+            let key = |row: &RatingRow| (row.session_id, row.trial_id);
+            crate::natural_order(left.subject_id.as_str(), right.subject_id.as_str())
+                .then_with(|| key(left).cmp(&key(right)))
+        });
+        ratings.check_each_trial_once(study)?;
+        Ok(ratings)
+    }
+
+    /// The ratings of one file that count.
+    fn read_file(
+        &mut self,
+        study: &Study,
+        path: &Path,
+        pilots: Pilots,
+    ) -> Result<Vec<RatingRow>, AnalysisError> {
+        let file = read_ratings(path, &StimulusPlan::factors())?;
+        if file.is_torn {
+            self.warnings.push(format!(
+                "{}: the last line is torn (the program was stopped while it wrote); it was never confirmed and is left out",
+                file_name(path)
+            ));
+        }
+        let stimuli = StimulusLevels::new(study);
+        for (index, row) in file.rows.iter().enumerate() {
+            check_row(study, path, index, row)?;
+            stimuli.check(path, index, row)?;
+        }
+        let is_test = |row: &RatingRow| row.phase == Phase::Test;
+        let is_pilot = file.rows.iter().any(|row| row.pilot);
+        if is_pilot && pilots == Pilots::LeftOut {
+            self.pilots_left_out.push(file_name(path));
+        }
+        let kept: Vec<RatingRow> = (file.rows.into_iter())
+            .filter(|row| is_test(row) && (pilots == Pilots::Included || !row.pilot))
+            .collect();
+        if let Some(first) = kept.first() {
+            self.sessions.push(session_record(path, first, &kept)?);
+            self.note_other_protocol(study, path);
+        }
+        Ok(kept)
+    }
+
+    /// Says where a session was run under another version of the protocol.
+    fn note_other_protocol(&mut self, study: &Study, ratings_path: &Path) {
+        let sidecar = DataSet::sidecar_path(ratings_path);
+        let value = fs::read(&sidecar)
+            .ok()
+            .and_then(|bytes| serde_json::from_slice::<serde_json::Value>(&bytes).ok());
+        let Some(value) = value else {
+            self.warnings.push(format!(
+                "{}: no readable sidecar, so it is not known under which protocol it was run",
+                file_name(ratings_path)
+            ));
+            return;
+        };
+        match value
+            .get("protocol_sha256")
+            .and_then(serde_json::Value::as_str)
+        {
+            Some(sha256) if sha256 == study.sha256.as_str() => {}
+            Some(sha256) => self.warnings.push(format!(
+                "{}: run under another version of the protocol (SHA-256 {}…, this one is {}…)",
+                file_name(ratings_path),
+                sha256.get(..12).unwrap_or(sha256),
+                study.sha256.as_str().get(..12).unwrap_or_default(),
+            )),
+            None => self.warnings.push(format!(
+                "{}: the sidecar does not name the protocol",
+                file_name(ratings_path)
+            )),
+        }
+    }
+
+    /// The digest of the digests of all files, in the order of their names.
+    pub(crate) fn sha256(&self) -> Sha256Digest {
+        let lines: Vec<String> = (self.sessions.iter())
+            .map(|session| format!("{}  {}\n", session.sha256, session.file_name))
+            .collect();
+        Sha256Digest::of(lines.concat().as_bytes())
+    }
+
+    fn nothing_to_analyse(&self, study: &Study) -> InputError {
+        let found = if self.pilots_left_out.is_empty() {
+            "no ratings".to_owned()
+        } else {
+            format!("only trial runs ({})", self.pilots_left_out.join(", "))
+        };
+        let protocol = study.path.display();
+        InputError::new(&self.folder, found, "at least one session's ratings").remedy(format!(
+            "run `acuity run {protocol} --subject ID` or `acuity simulate {protocol}` first"
+        ))
+    }
+
+    fn check_each_trial_once(&self, study: &Study) -> Result<(), InputError> {
+        let key = |row: &RatingRow| {
+            (
+                row.subject_id.clone(),
+                row.session_id,
+                row.trial_id,
+                row.pilot,
+            )
+        };
+        let same = |pair: &&[RatingRow]| key(&pair[0]) == key(&pair[1]);
+        let Some(row) = self.rows.windows(2).find(same).and_then(<[_]>::first) else {
+            return Ok(());
+        };
+        let place = format!(
+            "subject {}, session {}, trial {}",
+            row.subject_id, row.session_id, row.trial_id
+        );
+        let expected = format!("each trial of {} once", study.protocol.study);
+        Err(InputError::new(&self.folder, "two ratings", expected)
+            .at(place)
+            .remedy("remove the copy"))
+    }
+}
+
+/// The ratings files in a folder, by name.
+fn ratings_files(folder: &Path, study: &Study) -> Result<Vec<PathBuf>, AnalysisError> {
+    let kind = "the folder of a data set";
+    let entries = fs::read_dir(folder).map_err(|error| match error.kind() {
+        std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory => {
+            let protocol = study.path.display();
+            let remedy = format!(
+                "run `acuity run {protocol} --subject ID` or `acuity simulate {protocol}` first, or name the folder with --data"
+            );
+            InputError::new(folder, format!("no such folder ({error})"), kind)
+                .remedy(remedy)
+                .into()
+        }
+        _ => AnalysisError::from(ReadError::from_io(folder, kind, error)),
+    })?;
+    let mut files = Vec::new();
+    for entry in entries {
+        let path = entry
+            .map_err(|error| AnalysisError::from(ReadError::from_io(folder, kind, error)))?
+            .path();
+        if file_name(&path).ends_with("_data.csv") {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name()
+        .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+}
+
+fn observer_name(observer: Observer) -> &'static str {
+    match observer {
+        Observer::Person => "person",
+        Observer::Simulated => "simulated",
+    }
+}
+
+/// The line of a row: the header is line 1.
+fn line(index: usize) -> usize {
+    index + 2
+}
+
+fn check_row(study: &Study, path: &Path, index: usize, row: &RatingRow) -> Result<(), InputError> {
+    let scale = study.protocol.session.scale;
+    if !scale.contains(row.rating) {
+        let expected = format!("a whole number from {} to {}", scale.lowest, scale.highest);
+        return Err(InputError::new(path, row.rating.to_string(), expected)
+            .at(format!("line {}, column rating", line(index)))
+            .remedy("the session was run with another scale, or the file was changed"));
+    }
+    let is_named_so = file_name(path).contains(&format!("_subject-{}_", row.subject_id));
+    if !is_named_so {
+        let found = format!("the subject {}", row.subject_id);
+        return Err(
+            InputError::new(path, found, "the subject that the file name says")
+                .at(format!("line {}, column subject_id", line(index))),
+        );
+    }
+    Ok(())
+}
+
+/// The level of each factor of each stimulus, by the protocol.
+struct StimulusLevels(BTreeMap<StimulusId, Vec<String>>);
+
+impl StimulusLevels {
+    fn new(study: &Study) -> Self {
+        let levels = |stimulus: &protocols::Stimulus| stimulus.factors().into_values().collect();
+        let stimuli = study.protocol.stimuli.stimuli();
+        Self(
+            stimuli
+                .into_iter()
+                .map(|s| (s.id.clone(), levels(&s)))
+                .collect(),
+        )
+    }
+
+    /// Checks that a row's levels are those of its stimulus.
+    fn check(&self, path: &Path, index: usize, row: &RatingRow) -> Result<(), InputError> {
+        let place = |column: &str| format!("line {}, column {column}", line(index));
+        match self.0.get(&row.stimulus_id) {
+            None => Err(InputError::new(
+                path,
+                format!("the stimulus {}", row.stimulus_id),
+                "a stimulus of the protocol",
+            )
+            .at(place("stimulus_id"))
+            .remedy("the session belongs to another study")),
+            Some(levels) if *levels != row.levels => Err(InputError::new(
+                path,
+                row.levels.join(", "),
+                format!("{}, the levels of {}", levels.join(", "), row.stimulus_id),
+            )
+            .at(place(&StimulusPlan::factors().join(" and ")))),
+            Some(_) => Ok(()),
+        }
+    }
+}
+
+fn session_record(
+    path: &Path,
+    first: &RatingRow,
+    rows: &[RatingRow],
+) -> Result<SessionRecord, AnalysisError> {
+    let sha256 = Sha256Digest::of_file(path).map_err(|source| AnalysisError::Read {
+        file: path.to_owned(),
+        source,
+    })?;
+    let exposure_error =
+        |row: &RatingRow| (row.exposure_submitted_s - row.exposure_requested_s).abs();
+    let mut response_times: Vec<f64> = rows.iter().map(|row| row.response_time_s).collect();
+    response_times.sort_by(f64::total_cmp);
+    Ok(SessionRecord {
+        file_name: file_name(path),
+        sha256,
+        subject: first.subject_id.clone(),
+        session: first.session_id,
+        started_at: first.started_at.clone(),
+        n_rated: rows.len(),
+        missed_frames: rows.iter().map(|row| row.missed_frames).sum(),
+        trials_with_missed_frames: rows.iter().filter(|row| row.missed_frames > 0).count(),
+        largest_exposure_error_s: rows.iter().map(exposure_error).fold(0.0, f64::max),
+        median_response_time_s: median_of_sorted(&response_times),
+        is_pilot: first.pilot,
+    })
+}
+
+fn median_of_sorted(values: &[f64]) -> f64 {
+    let middle = values.len() / 2;
+    if values.len().is_multiple_of(2) {
+        f64::midpoint(values[middle - 1], values[middle])
+    } else {
+        values[middle]
+    }
+}
