@@ -61,8 +61,10 @@ pub fn render_image(
 
 /// The scene of a file, and the digest of the file.
 fn read_scene(path: &Path) -> Result<(Scene, Sha256Digest), RendererError> {
-    let scene = Scene::read(path)?;
-    let bytes =
-        fs::read(path).map_err(|error| ReadError::from_io(path, "a scene (TOML)", error))?;
-    Ok((scene, Sha256Digest::of(&bytes)))
+    let text = fs::read_to_string(path)
+        .map_err(|error| ReadError::from_io(path, "a scene (TOML)", error))?;
+    Ok((
+        Scene::from_toml(path, &text)?,
+        Sha256Digest::of(text.as_bytes()),
+    ))
 }

@@ -1,0 +1,106 @@
+//! How far the picture of A at N rays is from the truth: the refined tree beside uniform sampling.
+//!
+//! `cargo bench -p renderer --bench tree_error -- SCENE` prints one line for each ray count. The truth has
+//! 256 jittered samples a pixel and the same exact filter. Uniform sampling is one jittered sample in each
+//! cell of a grid of N cells as square as can be, with the same reconstruction.
+#![expect(clippy::print_stdout, reason = "a bench prints what it measured")]
+
+use std::path::Path;
+
+use protocols::{Channel, PerChannel, Quadrature, RefinementDriver};
+use renderer::{
+    ChannelImage, Reach, RendererError, Sampler, Scene, ScreenPoint, TracePlan, reconstruct, trace,
+};
+
+const SIZE_PX: [u32; 2] = [320, 320];
+
+fn main() -> Result<(), RendererError> {
+    let mut arguments = std::env::args().skip(1).filter(|argument| !argument.starts_with("--"));
+    let default = || concat!(env!("CARGO_MANIFEST_DIR"), "/../stimuli/scenes/opponent-solids.toml").to_owned();
+    let path = arguments.next().unwrap_or_else(default);
+    let scene = Scene::read(Path::new(&path))?;
+    let sampler = scene.sampler(Quadrature::Bands(16), SIZE_PX);
+    let plan = TracePlan {
+        seed: 1992,
+        size_px: SIZE_PX,
+        min_depth: 8,
+        driver: RefinementDriver::A,
+        stops: PerChannel::from_fn(|_| Reach::rays(140_000)),
+    };
+    let tree = trace(&sampler, &plan, &|_, _| ());
+    for channel in Channel::ALL {
+        let truth = uniform(&sampler, channel, [16 * SIZE_PX[0]; 2]);
+        println!("{channel}: rays, rms error of the tree, of uniform sampling, ratio");
+        for rays in [10_000_u32, 30_000, 50_000, 90_000, 140_000] {
+            let leaves = tree.leaves(channel, Reach::rays(rays as usize)).unwrap_or_default();
+            let refined = rms(&reconstruct(&leaves, SIZE_PX), &truth);
+            let side = f64::from(rays).sqrt();
+            let columns = count(side);
+            let even = rms(&uniform(&sampler, channel, [columns, rays / columns]), &truth);
+            println!("{rays:>8} {refined:.4} {even:.4} {:.2}", refined / even);
+        }
+    }
+    Ok(())
+}
+
+fn rms(image: &ChannelImage, truth: &ChannelImage) -> f64 {
+    image.rms_difference(truth).unwrap_or(f64::NAN)
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "the root of a ray count"
+)]
+fn count(side: f64) -> u32 {
+    side.round() as u32
+}
+
+/// One jittered sample in each cell of a grid, constant over the cell, filtered with a tent as exactly as
+/// the tree is: each cell is cut along the pixels that it meets by [`overlap`].
+fn uniform(sampler: &impl Sampler, channel: Channel, cells: [u32; 2]) -> ChannelImage {
+    let mut ray_tree = Default::default();
+    let [columns, rows] = cells;
+    let along_x = overlaps(columns, SIZE_PX[0]);
+    let along_y = overlaps(rows, SIZE_PX[1]);
+    let [width, height] = SIZE_PX.map(|size| size as usize);
+    let (mut sums, mut weights) = (vec![0.0; width * height], vec![0.0; width * height]);
+    for row in 0..rows {
+        for column in 0..columns {
+            let jitter = renderer::Cell::ROOT.random_point(u64::from(row) << 32 | u64::from(column));
+            let at = ScreenPoint {
+                x: (f64::from(column) + jitter.x) / f64::from(columns),
+                y: (f64::from(row) + jitter.y) / f64::from(rows),
+            };
+            sampler.intersect(at, &mut ray_tree);
+            let value = f64::from(sampler.shade(&ray_tree, channel));
+            for &(pixel_y, weight_y) in &along_y[row as usize] {
+                for &(pixel_x, weight_x) in &along_x[column as usize] {
+                    sums[pixel_y * width + pixel_x] += value * weight_x * weight_y;
+                    weights[pixel_y * width + pixel_x] += weight_x * weight_y;
+                }
+            }
+        }
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "images are of f32")]
+    let values = sums.iter().zip(&weights).map(|(sum, weight)| (sum / weight) as f32).collect();
+    ChannelImage::new(SIZE_PX, values).unwrap_or_else(|| unreachable!("as many values as pixels"))
+}
+
+/// For each of `cells` intervals the pixels whose tent it meets, and the part of the tent in it.
+fn overlaps(cells: u32, pixels: u32) -> Vec<Vec<(usize, f64)>> {
+    let up_to = |t: f64| {
+        let t = t.clamp(-1.0, 1.0);
+        if t < 0.0 { (1.0 + t).powi(2) / 2.0 } else { 1.0 - (1.0 - t).powi(2) / 2.0 }
+    };
+    let scale = f64::from(pixels) / f64::from(cells);
+    let overlap = |cell: u32| {
+        let (from, to) = (f64::from(cell) * scale, f64::from(cell + 1) * scale);
+        let part = |pixel: u32| {
+            let centre = f64::from(pixel) + 0.5;
+            (pixel as usize, up_to(to - centre) - up_to(from - centre))
+        };
+        (0..pixels).map(part).filter(|(_, weight)| *weight > 0.0).collect()
+    };
+    (0..cells).map(overlap).collect()
+}
