@@ -100,10 +100,10 @@ impl Sections<'_> {
         }
         if self.analysis.subjects.len() < 6 {
             // Writing to a `String` cannot fail.
-            _ = write!(
+            _ = writeln!(
                 html,
                 "<div class=\"banner\"><strong>FEW SUBJECTS.</strong> With {}, every test and interval below has little \
-                 power and rests on its assumptions.</div>\n",
+                 power and rests on its assumptions.</div>",
                 self.who()
             );
         }

@@ -3,6 +3,7 @@
 
 mod simulated_study;
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
@@ -85,4 +86,304 @@ fn every_file_is_written_and_no_other() {
     for name in names {
         fs::copy(trial.out().join(&name), kept.join(&name)).unwrap();
     }
+}
+
+#[test]
+fn the_same_ratings_give_the_same_bytes() {
+    let (first, second) = (Trial::with_people(5), Trial::with_people(5));
+    let (first_files, second_files) = (
+        first.report().unwrap().files,
+        second.report().unwrap().files,
+    );
+    for (one, other) in first_files.iter().zip(&second_files) {
+        assert!(
+            fs::read(one).unwrap() == fs::read(other).unwrap(),
+            "{}",
+            one.display()
+        );
+    }
+}
+
+#[test]
+fn its_analysis_of_variance_is_that_of_the_table_of_its_ratings() {
+    let trial = Trial::with_people(7);
+    let summary = trial.report().unwrap();
+    let mut table = String::from("who,channel,rays,rating\n");
+    for subject in 1..=7 {
+        for row in session(&trial.study, &format!("{subject:02}"), subject) {
+            if row.phase == protocols::rating::Phase::Test && row.levels[1] != "140K" {
+                let (channel, rays) = (&row.levels[0], &row.levels[1]);
+                writeln!(table, "{subject},{channel},{rays},{}", row.rating).unwrap();
+            }
+        }
+    }
+    let path = trial.folder.path().join("table.csv");
+    fs::write(&path, table).unwrap();
+    let design = Design {
+        subject: "who".to_owned(),
+        rating: "rating".to_owned(),
+        within: vec!["channel".to_owned(), "rays".to_owned()],
+        ..Design::default()
+    };
+    assert_eq!(
+        anova_of_table(&path, &design).unwrap().effects,
+        summary.anova.effects
+    );
+}
+
+#[test]
+fn the_page_is_whole_by_itself() {
+    let trial = Trial::with_people(12);
+    trial.report().unwrap();
+    let page = trial.page();
+    for outside in [
+        "<script", "http://", "https://", "src=", "url(", "@import", "<link",
+    ] {
+        let page = page.replace("http://www.w3.org/2000/svg", "");
+        assert!(!page.contains(outside), "{outside}");
+    }
+    assert!(page.contains("<svg") && page.ends_with("</html>\n"));
+    assert!(!page.contains("NaN") && !page.contains(">inf"));
+    // The curves that made these ratings: A worse than C1C2, both rising.
+    assert!(page.contains("cost less image quality"), "{page}");
+    // Printed: rays F(12, 120) = 51.44; R: pf(51.44, 12, 120, lower.tail = FALSE) is 1.70256e-41.
+    assert!(page.contains("51.44 (12, 120)") && page.contains("1.7 × 10<sup>−41</sup>"));
+    assert!(page.contains("11 subjects who each rated everything, or 12 subjects in two groups"));
+    assert!(
+        page.contains("rank 11"),
+        "it says why Mauchly's test does not exist"
+    );
+    assert!(!page.contains("SIMULATED"));
+}
+
+#[test]
+fn means_are_those_of_the_ratings() {
+    let trial = Trial::with_people(3);
+    trial.report().unwrap();
+    let means = fs::read_to_string(trial.out().join("means.csv")).unwrap();
+    assert_eq!(means.lines().count(), 1 + 27);
+    let ratings: Vec<i32> = (1..=3)
+        .flat_map(|subject| session(&trial.study, &format!("{subject:02}"), subject))
+        .filter(|row| {
+            row.stimulus_id.as_str() == "a010k_c140k" && row.phase == protocols::rating::Phase::Test
+        })
+        .map(|row| row.rating)
+        .collect();
+    let mean = f64::from(ratings.iter().sum::<i32>()) / 3.0;
+    let row = means
+        .lines()
+        .find(|line| line.starts_with("a010k_c140k,"))
+        .unwrap();
+    let fields: Vec<&str> = row.split(',').collect();
+    assert_eq!(fields[1..4], ["achromatic", "10K", "3"]);
+    assert!(
+        (fields[4].parse::<f64>().unwrap() - mean).abs() < 1e-12,
+        "{row} and {mean}"
+    );
+}
+
+#[test]
+fn the_picture_is_the_figure_at_twice_its_size() {
+    let trial = Trial::with_people(4);
+    trial.report().unwrap();
+    let png = fs::read(trial.out().join("figure-10.png")).unwrap();
+    assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
+    let size = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
+    assert_eq!((size(16), size(20)), (1520, 940));
+    let svg = fs::read_to_string(trial.out().join("figure-10.svg")).unwrap();
+    // One square or diamond for each of 14 ray counts, and one in the legend.
+    assert_eq!(svg.matches("h9v9h-9z").count(), 15);
+    assert_eq!(svg.matches("l6,-6l6,6l-6,6z").count(), 15);
+}
+
+#[test]
+fn an_unfinished_session_is_left_out_by_name() {
+    let trial = Trial::with_people(4);
+    let mut rows = session(&trial.study, "unfinished", 99);
+    rows.truncate(20);
+    write_session(&trial.study, &trial.data(), &rows);
+    let summary = trial.report().unwrap();
+    assert_eq!(summary.n_subjects, 4);
+    assert_eq!(summary.anova.dropped_subjects, ["unfinished"]);
+    let page = trial.page();
+    assert!(
+        page.contains("unfinished (17 of 27 images)"),
+        "three of the twenty were practice"
+    );
+}
+
+#[test]
+fn pilots_are_left_out_unless_asked_for() {
+    let trial = Trial::with_people(3);
+    let mut rows = session(&trial.study, "04", 4);
+    for row in &mut rows {
+        row.pilot = true;
+    }
+    write_session(&trial.study, &trial.data(), &rows);
+    assert_eq!(trial.report().unwrap().n_subjects, 3);
+    assert!(
+        trial
+            .page()
+            .contains("Trial runs left out: study-meyerliu1992_subject-04_session-1_task-pilot")
+    );
+    let with_pilots = report(&trial.study, &trial.data(), &trial.out(), Pilots::Included).unwrap();
+    assert_eq!(with_pilots.n_subjects, 4);
+    assert!(trial.page().contains("PILOT"));
+}
+
+#[test]
+fn simulated_observers_are_marked_and_never_mixed_with_people() {
+    let simulated = |trial: &Trial, subject: &str, seed: u64| {
+        let mut rows = session(&trial.study, subject, seed);
+        for row in &mut rows {
+            row.observer = Observer::Simulated;
+        }
+        write_session(&trial.study, &trial.data(), &rows);
+    };
+    let trial = Trial::new();
+    for seed in 1..=3 {
+        simulated(&trial, &format!("sim{seed}"), seed);
+    }
+    let summary = trial.report().unwrap();
+    assert_eq!(summary.observer, Observer::Simulated);
+    assert!(trial.page().contains("SIMULATED"));
+    let mixed = Trial::with_people(2);
+    simulated(&mixed, "sim1", 1);
+    let message = mixed.refusal();
+    assert!(
+        message.contains("subject-01_") && message.contains("subject-sim1_"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_block_rated_twice_is_averaged_within_the_subject() {
+    let trial = Trial::with_people(3);
+    let first = session(&trial.study, "01", 1);
+    let mut second = session(&trial.study, "01", 50);
+    for row in &mut second {
+        row.session_id = 2;
+    }
+    write_session(&trial.study, &trial.data(), &second);
+    trial.report().unwrap();
+    let means = fs::read_to_string(trial.out().join("means.csv")).unwrap();
+    let row = means
+        .lines()
+        .find(|line| line.starts_with("a030k_c140k,"))
+        .unwrap();
+    let rating = |rows: &[protocols::rating::RatingRow]| {
+        let is_it = |row: &&protocols::rating::RatingRow| row.stimulus_id.as_str() == "a030k_c140k";
+        f64::from(rows.iter().find(is_it).unwrap().rating)
+    };
+    let others = rating(&session(&trial.study, "02", 2)) + rating(&session(&trial.study, "03", 3));
+    let expected = (f64::midpoint(rating(&first), rating(&second)) + others) / 3.0;
+    let found: f64 = row.split(',').nth(4).unwrap().parse().unwrap();
+    assert!((found - expected).abs() < 1e-12, "{row} and {expected}");
+}
+
+#[test]
+fn a_session_under_another_protocol_is_said() {
+    let trial = Trial::with_people(3);
+    let sidecar = trial
+        .data()
+        .join("data/study-meyerliu1992_subject-02_session-1_task-rating_data.json");
+    fs::write(
+        &sidecar,
+        format!("{{\"protocol_sha256\": \"{}\"}}", "0".repeat(64)),
+    )
+    .unwrap();
+    let warnings = trial.report().unwrap().warnings;
+    assert_eq!(warnings.len(), 1);
+    assert!(
+        warnings[0].contains("subject-02") && warnings[0].contains("000000000000…"),
+        "{warnings:?}"
+    );
+    fs::remove_file(&sidecar).unwrap();
+    assert!(trial.report().unwrap().warnings[0].contains("no readable sidecar"));
+}
+
+#[test]
+fn a_torn_last_line_is_said_and_left_out() {
+    let trial = Trial::with_people(3);
+    let path = ratings_path(&trial, "03");
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, &text[..text.len() - 9]).unwrap();
+    let summary = trial.report().unwrap();
+    assert!(
+        summary.warnings[0].contains("torn"),
+        "{:?}",
+        summary.warnings
+    );
+    assert_eq!(summary.anova.dropped_subjects, ["03"]);
+}
+
+fn ratings_path(trial: &Trial, subject: &str) -> std::path::PathBuf {
+    let name = format!("data/study-meyerliu1992_subject-{subject}_session-1_task-rating_data.csv");
+    trial.data().join(name)
+}
+
+#[test]
+fn missing_and_empty_data_are_refused_with_what_to_do() {
+    let trial = Trial::new();
+    assert!(trial.refusal().contains("acuity run"));
+    fs::create_dir_all(trial.data().join("data")).unwrap();
+    assert!(trial.refusal().contains("found no ratings"));
+    let mut rows = session(&trial.study, "04", 4);
+    for row in &mut rows {
+        row.pilot = true;
+    }
+    write_session(&trial.study, &trial.data(), &rows);
+    assert!(trial.refusal().contains("only trial runs"));
+}
+
+#[test]
+fn one_subject_is_refused() {
+    let message = Trial::with_people(1).refusal();
+    assert!(message.contains("one complete subject (01)"), "{message}");
+}
+
+#[test]
+fn malformed_and_contradictory_ratings_are_refused_with_their_line() {
+    let cases = [
+        // A rating off the scale, of no number, of another image's levels, of another subject, of no image.
+        (
+            ",achromatic,10K,",
+            ",achromatic,20K,",
+            "line 5, column channel and rays",
+        ),
+        (
+            "test,a010k_c140k,1,achromatic",
+            "test,a011k_c140k,1,achromatic",
+            "line 5, column stimulus_id",
+        ),
+        ("02,1,4,test", "03,1,4,test", "line 5, column subject_id"),
+        ("02,1,4,test", "02,one,4,test", "line 5, column session_id"),
+        ("02,1,5,test", "02,1,4,test", "trial 4"),
+        ("response_time_s", "reaction_time_s", "line 1"),
+    ];
+    for (from, to, place) in cases {
+        let trial = Trial::with_people(3);
+        let path = ratings_path(&trial, "02");
+        let text = fs::read_to_string(&path).unwrap();
+        let practice_end = text.find("02,1,4,").unwrap();
+        let (practice, test) = text.split_at(if place == "line 1" { 0 } else { practice_end });
+        let changed = test.replacen(from, to, 1);
+        assert_ne!(changed, test, "{from}");
+        fs::write(&path, practice.to_owned() + &changed).unwrap();
+        let message = trial.refusal();
+        assert!(message.contains(place), "{message}");
+    }
+}
+
+#[test]
+fn a_rating_off_the_scale_is_refused() {
+    let trial = Trial::with_people(2);
+    let mut rows = session(&trial.study, "09", 9);
+    rows[10].rating = 11;
+    write_session(&trial.study, &trial.data(), &rows);
+    let message = trial.refusal();
+    assert!(
+        message.contains("line 12, column rating: found 11"),
+        "{message}"
+    );
 }

@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 
 /// The paper's study.
-pub fn paper() -> Study {
+pub(crate) fn paper() -> Study {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../protocols/meyer-liu-1992.toml");
     Study::read(&path).unwrap()
 }
@@ -18,7 +18,7 @@ pub fn paper() -> Study {
 ///
 /// Achromatic ratings rise to 9 with a constant of 35K rays, chromatic ones with one of 8K; noise is a
 /// triangle of two points either way.
-pub fn session(study: &Study, subject: &str, seed: u64) -> Vec<RatingRow> {
+pub(crate) fn session(study: &Study, subject: &str, seed: u64) -> Vec<RatingRow> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut uniform = || f64::from(random.next_u32()) / f64::from(u32::MAX);
     let bias = 2.0 * uniform() - 1.0;
@@ -56,7 +56,7 @@ pub fn session(study: &Study, subject: &str, seed: u64) -> Vec<RatingRow> {
             exposure_requested_s: 10.0,
             exposure_submitted_s: 10.002,
             missed_frames: u32::from(trial == 7),
-            started_at: format!("2026-11-21T09:{:02}:00.000Z", trial),
+            started_at: format!("2026-11-21T09:{trial:02}:00.000Z"),
             observer: Observer::Person,
             pilot: false,
         });
@@ -65,7 +65,7 @@ pub fn session(study: &Study, subject: &str, seed: u64) -> Vec<RatingRow> {
 }
 
 /// Writes the ratings and the sidecar of one session into the data set in `root`.
-pub fn write_session(study: &Study, root: &Path, rows: &[RatingRow]) {
+pub(crate) fn write_session(study: &Study, root: &Path, rows: &[RatingRow]) {
     let data_set = DataSet::new(root, &study.protocol.study);
     let first = rows.first().unwrap();
     let task = if first.pilot { "pilot" } else { "rating" };
@@ -79,7 +79,7 @@ pub fn write_session(study: &Study, root: &Path, rows: &[RatingRow]) {
 }
 
 /// Writes the sessions of `n` people, 01, 02 and so on.
-pub fn write_people(study: &Study, root: &Path, n: u64) {
+pub(crate) fn write_people(study: &Study, root: &Path, n: u64) {
     for subject in 1..=n {
         write_session(
             study,
