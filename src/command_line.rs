@@ -1,0 +1,181 @@
+//! The words of the command line and what they mean.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+use protocols::{Quadrature, RayCount, SubjectId};
+
+/// A psychophysics experiment harness: scene, rays, tree, channel images, stimuli, session, ratings, ANOVA,
+/// report.
+#[derive(Debug, Parser)]
+#[command(name = "acuity", version, arg_required_else_help = true)]
+pub(crate) struct CommandLine {
+    /// Print no progress.
+    #[arg(short, long, global = true)]
+    pub(crate) quiet: bool,
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Is everything ready for the first subject? One line for each thing that is not.
+    Check(CheckArguments),
+    /// Make the stimulus set of a protocol, and print what was spent and saved per channel.
+    Render(RenderArguments),
+    /// Make one image of a scene.
+    Image(ImageArguments),
+    /// Run one session in a full-screen window; it resumes where it stopped.
+    Run(RunArguments),
+    /// Let simulated observers sit the same session.
+    Simulate(SimulateArguments),
+    /// Analysis of variance of any table in long format.
+    Anova(AnovaArguments),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckArguments {
+    /// The protocol file.
+    pub(crate) protocol: PathBuf,
+    /// Folder of the stimulus set [default: stimuli/<set>]
+    #[arg(long)]
+    pub(crate) stimuli: Option<PathBuf>,
+    /// Folder of the ratings [default: data/<study>]
+    #[arg(long)]
+    pub(crate) data: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RenderArguments {
+    /// The protocol file.
+    pub(crate) protocol: PathBuf,
+    /// Folder for the images and their manifest [default: stimuli/<set>]
+    #[arg(long)]
+    pub(crate) out: Option<PathBuf>,
+    /// How many threads [default: one for each core]
+    #[arg(long)]
+    pub(crate) threads: Option<NonZeroUsize>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ImageArguments {
+    /// The scene file.
+    pub(crate) scene: PathBuf,
+    /// Rays for the achromatic channel, such as 50K.
+    #[arg(long)]
+    pub(crate) rays_a: RayCount,
+    /// Rays for the chromatic channels, such as 140K.
+    #[arg(long)]
+    pub(crate) rays_c1c2: RayCount,
+    /// Width and height in pixels.
+    #[arg(long, default_value = "320x320", value_parser = size_px)]
+    pub(crate) size: [u32; 2],
+    /// Seed of the sample positions.
+    #[arg(long, default_value_t = 1992)]
+    pub(crate) seed: u64,
+    /// Wavelengths: "16 bands" (3 to 301) or "meyer 1988".
+    #[arg(long, default_value = "16 bands", value_parser = quadrature)]
+    pub(crate) quadrature: Quadrature,
+    /// Down to this depth of the tree every cell is split.
+    #[arg(long, default_value_t = 8)]
+    pub(crate) min_depth: u32,
+    /// Neither shade nor store A below this depth of the tree (p of section 3.3).
+    #[arg(long)]
+    pub(crate) depth_a: Option<u32>,
+    /// The same for C1 (q of section 3.3).
+    #[arg(long)]
+    pub(crate) depth_c1: Option<u32>,
+    /// The same for C2 (r of section 3.3).
+    #[arg(long)]
+    pub(crate) depth_c2: Option<u32>,
+    /// How many threads [default: one for each core]
+    #[arg(long)]
+    pub(crate) threads: Option<NonZeroUsize>,
+    /// The image: .exr (A, C1, C2) or .png (sRGB).
+    #[arg(short, long)]
+    pub(crate) out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RunArguments {
+    /// The protocol file.
+    pub(crate) protocol: PathBuf,
+    /// Code of the subject: 1 to 32 letters and digits, never a name.
+    #[arg(long)]
+    pub(crate) subject: SubjectId,
+    /// Folder of the stimulus set [default: stimuli/<set>]
+    #[arg(long)]
+    pub(crate) stimuli: Option<PathBuf>,
+    /// Folder of the ratings [default: data/<study>]
+    #[arg(long)]
+    pub(crate) data: Option<PathBuf>,
+    /// Try the session out, this many times faster; marked PILOT on the screen and in the data.
+    #[arg(long, value_name = "SPEED", value_parser = pilot_speed)]
+    pub(crate) pilot: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SimulateArguments {
+    /// The protocol file.
+    pub(crate) protocol: PathBuf,
+    /// How many observers.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) subjects: u32,
+    /// Seed of the observers.
+    #[arg(long)]
+    pub(crate) seed: u64,
+    /// Folder of the stimulus set [default: stimuli/<set>]
+    #[arg(long)]
+    pub(crate) stimuli: Option<PathBuf>,
+    /// Folder of the simulated ratings [default: data/<study>-simulated]
+    #[arg(long)]
+    pub(crate) data: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct AnovaArguments {
+    /// The table: CSV or TSV with a header line, one rating a row.
+    pub(crate) table: PathBuf,
+    /// Column that names the subject.
+    #[arg(long, value_name = "COLUMN")]
+    pub(crate) subject: String,
+    /// Column with the rating.
+    #[arg(long, value_name = "COLUMN")]
+    pub(crate) rating: String,
+    /// Columns of the factors of which every subject has seen every level.
+    #[arg(long, value_name = "COLUMNS", value_delimiter = ',')]
+    pub(crate) within: Vec<String>,
+    /// Columns of the factors of which a subject has one level.
+    #[arg(long, value_name = "COLUMNS", value_delimiter = ',')]
+    pub(crate) between: Vec<String>,
+    /// Factors that were observed and not manipulated, for generalized eta squared.
+    #[arg(long, value_name = "COLUMNS", value_delimiter = ',')]
+    pub(crate) observed: Vec<String>,
+    /// Print JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+fn size_px(text: &str) -> Result<[u32; 2], String> {
+    let sides = text
+        .split_once('x')
+        .and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
+    sides
+        .filter(|sides: &[u32; 2]| sides.iter().all(|side| (1..=16_384).contains(side)))
+        .ok_or_else(|| format!("found the size {text:?}, expected WIDTHxHEIGHT in pixels, each from 1 to 16384, such as 320x320"))
+}
+
+fn quadrature(text: &str) -> Result<Quadrature, String> {
+    text.to_owned().try_into()
+}
+
+fn pilot_speed(text: &str) -> Result<f64, String> {
+    let speed = text
+        .parse()
+        .ok()
+        .filter(|speed: &f64| (1.0..=1000.0).contains(speed));
+    speed.ok_or_else(|| {
+        format!("found the speed {text:?}, expected a number from 1 to 1000, such as 20")
+    })
+}

@@ -1,0 +1,43 @@
+//! `acuity render`, `image` and `figures`: from a protocol or a scene to pictures.
+
+use protocols::{RefinementDriver, Study, TreePlan};
+use renderer::ImageRequest;
+
+use crate::command_line::{ImageArguments, RenderArguments};
+use crate::console::Console;
+
+pub(crate) fn set(arguments: &RenderArguments, console: &Console) -> anyhow::Result<()> {
+    let study = Study::read(&arguments.protocol)?;
+    let out = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| study.default_stimuli_dir());
+    let summary = console.with_progress("render", |progress| {
+        renderer::render_set(&study, &out, arguments.threads, progress)
+    })?;
+    console.result(&summary.to_string())?;
+    Ok(())
+}
+
+pub(crate) fn image(arguments: &ImageArguments, console: &Console) -> anyhow::Result<()> {
+    let request = ImageRequest {
+        rays_a: arguments.rays_a,
+        rays_c1c2: arguments.rays_c1c2,
+        stop_depths: protocols::PerChannel {
+            a: arguments.depth_a,
+            c1: arguments.depth_c1,
+            c2: arguments.depth_c2,
+        },
+        size_px: arguments.size,
+        seed: arguments.seed,
+        quadrature: arguments.quadrature,
+        tree: TreePlan {
+            min_depth: arguments.min_depth,
+            driver: RefinementDriver::A,
+        },
+        threads: arguments.threads,
+    };
+    let summary = renderer::render_image(&arguments.scene, &request, &arguments.out)?;
+    console.result(&summary.to_string())?;
+    Ok(())
+}
