@@ -393,3 +393,76 @@ fn digits(sizes: &[usize], mut index: usize) -> Vec<usize> {
 fn index_of(sizes: &[usize], digits: &[usize]) -> usize {
     (sizes.iter().zip(digits)).fold(0, |index, (&size, &digit)| index * size + digit)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn observations(rows: &[(&str, &str, &str, Option<f64>)]) -> Observations {
+        let names = |name: &str| vec![name.to_owned()];
+        let mut all = Observations::new("a test".as_ref(), &names("group"), &names("rays"));
+        for &(subject, group, rays, rating) in rows {
+            all.push(subject, [group, rays], rating);
+        }
+        all
+    }
+
+    #[test]
+    fn cells_are_subjects_by_levels_in_natural_order() {
+        let rows = [
+            ("b", "y", "100K", Some(4.0)),
+            ("b", "y", "20K", Some(3.0)),
+            ("a", "x", "20K", Some(1.0)),
+            ("a", "x", "100K", Some(2.0)),
+            ("c", "x", "20K", Some(5.0)),
+            ("c", "x", "100K", Some(6.0)),
+            ("c", "x", "100K", Some(8.0)),
+        ];
+        let cells = CellMatrix::new(&observations(&rows)).unwrap();
+        assert_eq!(cells.subjects, ["a", "b", "c"]);
+        assert_eq!(cells.groups, [0, 1, 0]);
+        assert_eq!(cells.cell_levels(1), ["100K"]);
+        let expected = DMatrix::from_row_slice(3, 2, &[1.0, 2.0, 3.0, 4.0, 5.0, 7.0]);
+        assert_eq!(cells.scores, expected);
+        assert_eq!(cells.warnings.len(), 1, "{:?}", cells.warnings);
+    }
+
+    #[test]
+    fn a_group_whose_subjects_are_all_incomplete_is_left_out_and_said() {
+        let mut rows = vec![("d", "z", "20K", Some(1.0)), ("d", "z", "100K", None)];
+        for (subject, group) in [("a", "x"), ("b", "y"), ("c", "y")] {
+            rows.push((subject, group, "20K", Some(2.0)));
+            rows.push((subject, group, "100K", Some(3.0)));
+        }
+        let cells = CellMatrix::new(&observations(&rows)).unwrap();
+        assert_eq!(cells.dropped_subjects, ["d"]);
+        assert_eq!(cells.between[0].levels, ["x", "y"]);
+        assert_eq!(cells.group_sizes(), [1, 2]);
+        assert!(
+            cells
+                .warnings
+                .iter()
+                .any(|warning| warning.contains("\"z\"")),
+            "{:?}",
+            cells.warnings
+        );
+    }
+
+    #[test]
+    fn two_groups_that_shrink_to_one_are_refused() {
+        let rows = [
+            ("a", "x", "20K", Some(1.0)),
+            ("a", "x", "100K", Some(2.0)),
+            ("b", "x", "20K", Some(1.0)),
+            ("b", "x", "100K", Some(2.0)),
+            ("c", "y", "20K", Some(5.0)),
+        ];
+        let message = CellMatrix::new(&observations(&rows))
+            .unwrap_err()
+            .to_string();
+        assert!(
+            message.contains("one level (\"x\") of the factor group"),
+            "{message}"
+        );
+    }
+}

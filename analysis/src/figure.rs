@@ -52,6 +52,8 @@ pub(crate) struct Figure<'a> {
     pub(crate) analysis: &'a StudyAnalysis,
     pub(crate) scale: Scale,
     pub(crate) confidence: f64,
+    /// Who rated, such as `12 subjects`.
+    pub(crate) who: &'a str,
     pub(crate) palette: Palette,
 }
 
@@ -190,10 +192,10 @@ impl Figure<'_> {
 
     fn legend(&self, svg: &mut String) {
         let ink = self.palette.ink;
-        let (left, top) = (RIGHT - 318.0, BOTTOM - 84.0);
+        let (left, top) = (RIGHT - 318.0, BOTTOM - 106.0);
         _ = writeln!(
             svg,
-            "<rect x=\"{}\" y=\"{}\" width=\"326\" height=\"70\" style=\"fill:{}\"/>",
+            "<rect x=\"{}\" y=\"{}\" width=\"326\" height=\"92\" style=\"fill:{}\"/>",
             left - 8.0,
             top - 13.0,
             self.palette.paper
@@ -237,6 +239,13 @@ impl Figure<'_> {
             y + 8.0,
             left + 42.0,
             y + 4.5
+        );
+        _ = writeln!(
+            svg,
+            "<text x=\"{}\" y=\"{}\" style=\"fill:{ink}\">{}</text>",
+            left + 42.0,
+            y + 26.5,
+            self.who
         );
     }
 }

@@ -28,6 +28,7 @@ mod picture;
 mod report;
 mod results_text;
 mod sections;
+mod sidecar_facts;
 mod sphericity;
 mod study_analysis;
 mod study_ratings;

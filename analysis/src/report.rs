@@ -52,11 +52,13 @@ pub fn report(
 ) -> Result<ReportSummary, AnalysisError> {
     let ratings = StudyRatings::read(study, data_dir, pilots)?;
     let analysis = StudyAnalysis::new(study, &ratings)?;
+    let who = ratings.who(analysis.subjects.len());
     let figure = |palette: Palette| {
         let figure = Figure {
             analysis: &analysis,
             scale: study.protocol.session.scale,
             confidence: study.protocol.analysis.confidence,
+            who: &who,
             palette,
         };
         figure.to_svg()

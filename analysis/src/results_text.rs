@@ -126,7 +126,7 @@ impl Words<'_> {
             .count();
         Some(format!(
             "The chromatic mean lay above the achromatic one at {n_above} of {} ray counts; the {:.0}% interval of the \
-             paired difference leaves out zero at {n_clear}, and {n_holm} stay significant after Holm’s correction.",
+             paired difference leaves out zero at {n_clear}, and the difference is significant after Holm’s correction at {n_holm}.",
             all.len(),
             100.0 * self.study.protocol.analysis.confidence
         ))
@@ -202,13 +202,17 @@ pub(crate) fn effect_name(effect: &str) -> String {
     crate::page::escaped(effect).replace(':', " × ")
 }
 
-/// Which designs the printed degrees of freedom allow.
-pub(crate) fn printed_designs(published: &[PublishedEffect], n_subjects: usize) -> Option<String> {
+/// Which designs the printed degrees of freedom allow; `who` are the subjects here, in `n_groups` groups, and
+/// `df_error` their error degrees of freedom for each contrast.
+pub(crate) fn printed_designs(
+    published: &[PublishedEffect],
+    who: &str,
+    n_groups: usize,
+    df_error: usize,
+) -> Option<String> {
     let error_df = |effect: &PublishedEffect| effect.df_den / effect.df_num;
     let first = error_df(published.first()?);
-    let all_agree = published
-        .iter()
-        .all(|effect| (error_df(effect) - first).abs() < 1e-9);
+    let all_agree = (published.iter()).all(|effect| (error_df(effect) - first).abs() < 1e-9);
     if !all_agree || first.fract() != 0.0 {
         return None;
     }
@@ -216,14 +220,23 @@ pub(crate) fn printed_designs(published: &[PublishedEffect], n_subjects: usize) 
         .map(|effect| format!("({}, {})", effect.df_num, effect.df_den))
         .collect();
     dfs.dedup();
+    let here = if n_groups == 1 {
+        "each of whom rated everything,"
+    } else {
+        "in two groups,"
+    };
+    let same = if df_error as f64 == first {
+        "as many, so <i>F</i> values and <i>p</i> values compare directly"
+    } else {
+        "so <i>F</i> values compare in size only"
+    };
     Some(format!(
         "The printed degrees of freedom, {}, mean {first} error degrees of freedom for each contrast: {} subjects who each \
-         rated everything, or {} subjects in two groups of which each rated one sequence. The {n_subjects} subjects here, who \
-         each rated everything, give {} for each contrast, so <i>F</i> values compare in size only.",
+         rated everything, or {} subjects in two groups of which each rated one sequence. The {who} here, {here} give \
+         {df_error} for each contrast, {same}.",
         dfs.join(" and "),
         first + 1.0,
         first + 2.0,
-        n_subjects.saturating_sub(1)
     ))
 }
 

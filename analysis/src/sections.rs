@@ -47,12 +47,7 @@ impl Sections<'_> {
     }
 
     fn who(&self) -> String {
-        let n = self.analysis.subjects.len();
-        match self.ratings.observer {
-            Observer::Person if n == 1 => "1 subject".to_owned(),
-            Observer::Person => format!("{n} subjects"),
-            Observer::Simulated => format!("{n} simulated observers"),
-        }
+        self.ratings.who(self.analysis.subjects.len())
     }
 
     fn head(&self) -> String {
@@ -70,6 +65,9 @@ impl Sections<'_> {
 
     /// When the ratings were taken, by the data.
     fn dates(&self) -> String {
+        if self.ratings.observer == Observer::Simulated {
+            return "simulated ratings, on a virtual clock".to_owned();
+        }
         let mut days: Vec<&str> = (self.ratings.sessions.iter())
             .map(|session| session.started_at.get(..10).unwrap_or(&session.started_at))
             .collect();
@@ -310,7 +308,14 @@ impl Sections<'_> {
             }
             table.row(&cells);
         }
-        let designs = printed_designs(published, self.analysis.subjects.len()).unwrap_or_default();
+        let n_groups = if self.study.protocol.analysis.between.is_empty() {
+            1
+        } else {
+            2
+        };
+        let df_error = self.analysis.subjects.len().saturating_sub(n_groups);
+        let designs =
+            printed_designs(published, &self.who(), n_groups, df_error).unwrap_or_default();
         format!(
             "<section>\n<h2>Beside the paper</h2>\n<p>The paper prints <i>F</i> values and bounds on <i>p</i>; the <i>p</i> and \
              η²<sub>p</sub> in the table follow from <i>F</i> and its degrees of freedom. {designs}</p>\n{}</section>\n",
@@ -434,7 +439,7 @@ impl Sections<'_> {
         ];
         let mut table = Table::new("The sessions.", &columns);
         for session in &self.ratings.sessions {
-            table.row(&session_cells(session));
+            table.row(&session_cells(session, self.ratings.observer));
         }
         format!(
             "<section>\n<h2>Quality of the data</h2>\n<ul>\n{}</ul>\n{}</section>\n",
@@ -464,6 +469,19 @@ impl Sections<'_> {
         ]
     }
 
+    /// With which versions of the program the ratings were taken, as far as the sidecars say.
+    fn taken_with(&self) -> String {
+        let mut versions: Vec<&str> = (self.ratings.sessions.iter())
+            .filter_map(|session| session.sidecar.acuity_version.as_deref())
+            .collect();
+        versions.sort_unstable();
+        versions.dedup();
+        if versions.is_empty() {
+            return String::new();
+        }
+        format!("; ratings taken with {}", escaped(&versions.join(" and ")))
+    }
+
     fn provenance(&self) -> String {
         let protocol = self
             .study
@@ -473,7 +491,7 @@ impl Sections<'_> {
         let entries = [
             ("Protocol", format!("{protocol}, SHA-256 <code>{}</code>", self.study.sha256)),
             ("Ratings", format!("{} files, SHA-256 of their digests <code>{}</code>", self.ratings.sessions.len(), self.ratings.sha256())),
-            ("Program", format!("Acuity {}", env!("CARGO_PKG_VERSION"))),
+            ("Program", format!("Acuity {}{}", env!("CARGO_PKG_VERSION"), self.taken_with())),
             (
                 "Files",
                 "<code>anova.json</code>, <code>anova.csv</code>, <code>means.csv</code>, <code>figure-10.svg</code>, \
@@ -527,8 +545,11 @@ fn mean_cells(condition: Option<&ConditionMean>) -> [String; 4] {
     ]
 }
 
-fn session_cells(session: &SessionRecord) -> Vec<String> {
-    let started: String = session.started_at.chars().take(16).collect();
+fn session_cells(session: &SessionRecord, observer: Observer) -> Vec<String> {
+    let started: String = match observer {
+        Observer::Person => session.started_at.chars().take(16).collect(),
+        Observer::Simulated => "virtual clock".to_owned(),
+    };
     let pilot = if session.is_pilot { " (pilot)" } else { "" };
     vec![
         format!("{}{pilot}", session.subject),

@@ -15,6 +15,7 @@ use protocols::{
 };
 
 use crate::AnalysisError;
+use crate::sidecar_facts::SidecarFacts;
 
 /// Whether trial runs are analysed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,6 +58,7 @@ pub(crate) struct SessionRecord {
     pub(crate) largest_exposure_error_s: f64,
     pub(crate) median_response_time_s: f64,
     pub(crate) is_pilot: bool,
+    pub(crate) sidecar: SidecarFacts,
 }
 
 impl StudyRatings {
@@ -110,6 +112,7 @@ impl StudyRatings {
                 .then_with(|| key(left).cmp(&key(right)))
         });
         ratings.check_each_trial_once(study)?;
+        ratings.note_other_images();
         Ok(ratings)
     }
 
@@ -141,40 +144,38 @@ impl StudyRatings {
             .filter(|row| is_test(row) && (pilots == Pilots::Included || !row.pilot))
             .collect();
         if let Some(first) = kept.first() {
-            self.sessions.push(session_record(path, first, &kept)?);
-            self.note_other_protocol(study, path);
+            let session = session_record(path, first, &kept)?;
+            if let Some(complaint) = session.sidecar.complaint(study.sha256.as_str()) {
+                self.warnings
+                    .push(format!("{}: {complaint}", session.file_name));
+            }
+            self.sessions.push(session);
         }
         Ok(kept)
     }
 
-    /// Says where a session was run under another version of the protocol.
-    fn note_other_protocol(&mut self, study: &Study, ratings_path: &Path) {
-        let sidecar = DataSet::sidecar_path(ratings_path);
-        let value = fs::read(&sidecar)
-            .ok()
-            .and_then(|bytes| serde_json::from_slice::<serde_json::Value>(&bytes).ok());
-        let Some(value) = value else {
-            self.warnings.push(format!(
-                "{}: no readable sidecar, so it is not known under which protocol it was run",
-                file_name(ratings_path)
-            ));
-            return;
+    /// `n` of those who rated, in words: `12 subjects`.
+    pub(crate) fn who(&self, n: usize) -> String {
+        let noun = match self.observer {
+            Observer::Person => "subject",
+            Observer::Simulated => "simulated observer",
         };
-        match value
-            .get("protocol_sha256")
-            .and_then(serde_json::Value::as_str)
-        {
-            Some(sha256) if sha256 == study.sha256.as_str() => {}
-            Some(sha256) => self.warnings.push(format!(
-                "{}: run under another version of the protocol (SHA-256 {}…, this one is {}…)",
-                file_name(ratings_path),
-                sha256.get(..12).unwrap_or(sha256),
-                study.sha256.as_str().get(..12).unwrap_or_default(),
-            )),
-            None => self.warnings.push(format!(
-                "{}: the sidecar does not name the protocol",
-                file_name(ratings_path)
-            )),
+        let plural = if n == 1 { "" } else { "s" };
+        format!("{n} {noun}{plural}")
+    }
+
+    /// Says where the images of one session were not those of another.
+    fn note_other_images(&mut self) {
+        let mut manifests: Vec<&str> = (self.sessions.iter())
+            .filter_map(|session| session.sidecar.manifest_sha256.as_deref())
+            .collect();
+        manifests.sort_unstable();
+        manifests.dedup();
+        if manifests.len() > 1 {
+            self.warnings.push(format!(
+                "the sessions showed {} different stimulus sets (by the digests of their manifests)",
+                manifests.len()
+            ));
         }
     }
 
@@ -348,6 +349,7 @@ fn session_record(
         largest_exposure_error_s: rows.iter().map(exposure_error).fold(0.0, f64::max),
         median_response_time_s: median_of_sorted(&response_times),
         is_pilot: first.pilot,
+        sidecar: SidecarFacts::read(path),
     })
 }
 

@@ -148,6 +148,10 @@ fn the_page_is_whole_by_itself() {
     assert!(page.contains("cost less image quality"), "{page}");
     // Printed: rays F(12, 120) = 51.44; R: pf(51.44, 12, 120, lower.tail = FALSE) is 1.70256e-41.
     assert!(page.contains("51.44 (12, 120)") && page.contains("1.7 × 10<sup>−41</sup>"));
+    // What follows from the printed F values: 24.03 / (24.03 + 10) = .706 and so on.
+    for eta in ["<td>.706</td>", "<td>.837</td>", "<td>.537</td>"] {
+        assert!(page.contains(eta), "{eta}");
+    }
     assert!(page.contains("11 subjects who each rated everything, or 12 subjects in two groups"));
     assert!(
         page.contains("rank 11"),
@@ -247,6 +251,11 @@ fn simulated_observers_are_marked_and_never_mixed_with_people() {
     let summary = trial.report().unwrap();
     assert_eq!(summary.observer, Observer::Simulated);
     assert!(trial.page().contains("SIMULATED"));
+    let svg = fs::read_to_string(trial.out().join("figure-10.svg")).unwrap();
+    assert!(
+        svg.contains("3 simulated observers"),
+        "the figure says so wherever it goes"
+    );
     let mixed = Trial::with_people(2);
     simulated(&mixed, "sim1", 1);
     let message = mixed.refusal();
@@ -298,6 +307,22 @@ fn a_session_under_another_protocol_is_said() {
         warnings[0].contains("subject-02") && warnings[0].contains("000000000000…"),
         "{warnings:?}"
     );
+    let other_images = format!(
+        "{{\"protocol_sha256\": \"{}\", \"manifest_sha256\": \"1\", \"acuity_version\": \"9.8.7\"}}",
+        trial.study.sha256
+    );
+    fs::write(&sidecar, &other_images).unwrap();
+    fs::write(
+        ratings_path(&trial, "03").with_extension("json"),
+        other_images.replace("\"1\"", "\"2\""),
+    )
+    .unwrap();
+    let warnings = trial.report().unwrap().warnings;
+    assert!(
+        warnings[0].contains("2 different stimulus sets"),
+        "{warnings:?}"
+    );
+    assert!(trial.page().contains("ratings taken with 9.8.7"));
     fs::remove_file(&sidecar).unwrap();
     assert!(trial.report().unwrap().warnings[0].contains("no readable sidecar"));
 }
@@ -385,5 +410,44 @@ fn a_rating_off_the_scale_is_refused() {
     assert!(
         message.contains("line 12, column rating: found 11"),
         "{message}"
+    );
+}
+
+#[test]
+fn two_groups_of_six_have_the_degrees_of_freedom_of_the_paper() {
+    let mut trial = Trial::new();
+    trial.study.protocol.analysis.within = vec!["rays".to_owned()];
+    trial.study.protocol.analysis.between = vec!["channel".to_owned()];
+    for subject in 1..=12 {
+        let mut rows = session(&trial.study, &format!("{subject:02}"), subject);
+        let own = if subject <= 6 {
+            "achromatic"
+        } else {
+            "chromatic"
+        };
+        rows.retain(|row| row.levels[0] == own || row.levels[0] == "both");
+        write_session(&trial.study, &trial.data(), &rows);
+    }
+    let summary = trial.report().unwrap();
+    assert_eq!(summary.n_subjects, 12);
+    // Meyer & Liu (1992), section 3.4: F(1,10), F(12,120), F(12,120).
+    let dfs: Vec<(usize, usize)> = summary
+        .anova
+        .effects
+        .iter()
+        .map(|row| (row.df_num, row.df_den))
+        .collect();
+    assert_eq!(dfs, [(1, 10), (12, 120), (12, 120)]);
+    let page = trial.page();
+    assert!(page.contains("12 subjects here, in two groups, give 10 for each contrast, as many"));
+    assert!(
+        !page.contains("The two sequences at each ray count"),
+        "no one rated both"
+    );
+    let means = fs::read_to_string(trial.out().join("means.csv")).unwrap();
+    assert_eq!(
+        means.lines().count(),
+        1 + 28,
+        "each group has its own mean of the image that both saw"
     );
 }
