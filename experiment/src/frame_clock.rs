@@ -9,6 +9,17 @@ const WINDOW: usize = 31;
 /// From how many intervals on the median is taken.
 const ENOUGH: usize = 5;
 
+/// What lay between two frames.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Interval {
+    /// A rest: the second frame had nothing to wait for.
+    Rest,
+    /// They followed each other at once.
+    Running,
+    /// They followed each other at once, and the test image stood between them.
+    Exposure,
+}
+
 /// The frame time, and every interval between two frames with a test image.
 #[derive(Clone, Debug, Default)]
 pub struct FrameClock {
@@ -35,14 +46,13 @@ pub struct FrameSummary {
 
 impl FrameClock {
     /// Takes the beginning of a frame; says whether it came later than one and a half frame times after
-    /// the one before. `is_counted` if the two followed each other without a rest, `is_exposure` if the
-    /// test image stood between them.
-    pub(crate) fn frame(&mut self, at_s: f64, is_counted: bool, is_exposure: bool) -> bool {
+    /// the one before.
+    pub(crate) fn frame(&mut self, at_s: f64, interval: Interval) -> bool {
         let previous_s = self.previous_s.replace(at_s);
         let Some(interval_s) = previous_s.map(|previous_s| at_s - previous_s) else {
             return false;
         };
-        if !is_counted {
+        if interval == Interval::Rest {
             return false;
         }
         let is_late = interval_s > 1.5 * self.frame_s();
@@ -50,7 +60,7 @@ impl FrameClock {
         if self.recent_s.len() > WINDOW {
             self.recent_s.pop_front();
         }
-        if is_exposure {
+        if interval == Interval::Exposure {
             self.exposure_intervals_s.push(interval_s);
             self.missed += u32::from(is_late);
         }

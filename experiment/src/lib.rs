@@ -6,6 +6,10 @@
 //! Not here: how the images are made and how the ratings are analysed. The stimulus set comes in, and the
 //! ratings go out, as files of the crate `protocols`.
 
+#[cfg(test)]
+#[path = "../tests/common/mod.rs"]
+mod common;
+
 mod button;
 mod data_set_files;
 mod error;

@@ -12,6 +12,7 @@ use crate::random::Random;
 
 /// One trial to come: what is shown, and how it stands in the ratings file.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[expect(clippy::struct_field_names, reason = "the names of the columns")]
 pub struct Trial {
     /// Its number in the session, practice included, from 1.
     pub trial_id: u32,

@@ -1,4 +1,4 @@
-//! Random numbers whose stream is fixed for good: ChaCha with 20 rounds, keyed by words.
+//! Random numbers whose stream is fixed for good: `ChaCha20`, keyed by words.
 //!
 //! The key is the SHA-256 of a sentence that says what the numbers are for, so that the order of one
 //! subject's trials and the noise of one observer never share a stream. Bounded numbers, the shuffle and

@@ -22,7 +22,7 @@
 //! Not here: clocks, files, random numbers, pictures.
 
 use crate::button::{Button, Key};
-use crate::frame_clock::FrameClock;
+use crate::frame_clock::{FrameClock, Interval};
 use crate::order::Trial;
 
 use protocols::rating::Phase;
@@ -316,9 +316,13 @@ impl Session {
         let is_standing = self.asking.is_none()
             && self.exposed.onset_s.is_some()
             && self.exposed.offset_s.is_none();
-        let is_continuous = self.view.is_drawn && self.needs_frames();
-        let is_late = self.clock.frame(at_s, is_continuous, is_standing);
-        if is_standing && is_late {
+        let interval = match (self.view.is_drawn && self.needs_frames(), is_standing) {
+            (false, _) => Interval::Rest,
+            (true, false) => Interval::Running,
+            (true, true) => Interval::Exposure,
+        };
+        let is_late = self.clock.frame(at_s, interval);
+        if interval == Interval::Exposure && is_late {
             self.exposed.missed_frames += 1;
         }
         if self.view.is_drawn && self.view.shown_s.is_none() {

@@ -56,6 +56,10 @@ impl fmt::Display for SimulationSummary {
 ///
 /// The stimulus set cannot be used, `data_dir` holds something other than simulated ratings of this study,
 /// or the system will not take the files.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "two places, two numbers, one study, one listener"
+)]
 pub fn simulate(
     study: &Study,
     stimuli_dir: &Path,
@@ -83,11 +87,18 @@ pub fn simulate(
 
     let width = subjects.to_string().len().max(2);
     let done = AtomicU64::new(0);
+    let simulation = Simulation {
+        study,
+        set: &set,
+        qualities: &qualities,
+        data_set: &fresh,
+        seed,
+    };
     let counts: Vec<usize> = (1..=subjects)
         .into_par_iter()
         .map(|number| {
             let name = format!("{number:0width$}");
-            let rated = simulate_one(study, &set, &qualities, &fresh, &name, seed)?;
+            let rated = simulation.sit(&name)?;
             let so_far = done.fetch_add(1, Ordering::Relaxed) + 1;
             progress(so_far, u64::from(subjects));
             Ok(rated)
@@ -102,55 +113,63 @@ pub fn simulate(
     })
 }
 
-fn simulate_one(
-    study: &Study,
-    set: &StimulusSet,
-    qualities: &BTreeMap<StimulusId, Quality>,
-    data_set: &DataSet,
-    name: &str,
+/// What every simulated session needs.
+struct Simulation<'a> {
+    study: &'a Study,
+    set: &'a StimulusSet,
+    qualities: &'a BTreeMap<StimulusId, Quality>,
+    data_set: &'a DataSet,
     seed: u64,
-) -> Result<usize, ExperimentError> {
-    let parse = |reason: String| InputError::new(data_set.root(), reason, "fewer observers");
-    let subject: SubjectId = name.parse().map_err(parse)?;
-    let key = SessionKey {
-        subject_id: subject.clone(),
-        session_id: 1,
-        observer: Observer::Simulated,
-        pilot_speed: None,
-    };
-    let trials = trials(&study.protocol, &subject, key.session_id);
-    let observer = SimulatedObserver::new(&study.protocol, &subject, seed);
-    let traits = observer.traits();
-    let session = observer.sit(&trials, qualities)?;
+}
 
-    let mut text = header_line(&StimulusPlan::factors());
-    for answer in &session.answers {
-        let requested_s = study.protocol.session.exposure_s;
-        let row = rating_row(
-            &key,
-            &trials[answer.trial],
-            answer,
-            requested_s,
-            Timestamp::UNIX_EPOCH,
-        );
-        text.push_str(&row.to_line());
+impl Simulation<'_> {
+    /// One observer sits the session; says how many trials were rated.
+    fn sit(&self, name: &str) -> Result<usize, ExperimentError> {
+        let parse =
+            |reason: String| InputError::new(self.data_set.root(), reason, "fewer observers");
+        let subject: SubjectId = name.parse().map_err(parse)?;
+        let key = SessionKey {
+            subject_id: subject.clone(),
+            session_id: 1,
+            observer: Observer::Simulated,
+            pilot_speed: None,
+        };
+        let trials = trials(&self.study.protocol, &subject, key.session_id);
+        let observer = SimulatedObserver::new(&self.study.protocol, &subject, self.seed);
+        let traits = observer.traits();
+        let session = observer.sit(&trials, self.qualities)?;
+
+        let mut text = header_line(&StimulusPlan::factors());
+        for answer in &session.answers {
+            let requested_s = self.study.protocol.session.exposure_s;
+            let row = rating_row(
+                &key,
+                &trials[answer.trial],
+                answer,
+                requested_s,
+                Timestamp::UNIX_EPOCH,
+            );
+            text.push_str(&row.to_line());
+        }
+        let path = self
+            .data_set
+            .ratings_path(&subject, key.session_id, key.task());
+        write_atomically(&path, text.as_bytes()).map_err(ExperimentError::io("write", &path))?;
+
+        let mut sidecar = Sidecar::new(self.study, self.set.manifest_sha256(), &key);
+        sidecar.model = Some(traits);
+        sidecar.sittings.push(Sitting {
+            started_at: utc(Timestamp::UNIX_EPOCH, 0.0),
+            first_trial_id: 1,
+            ended_at: Some(utc(Timestamp::UNIX_EPOCH, session.ended_s)),
+            ending: Some(ending_word(Ending::Complete)),
+            station: None,
+            frames: None,
+            focus_losses: 0,
+        });
+        sidecar.write(&DataSet::sidecar_path(&path))?;
+        Ok(session.answers.len())
     }
-    let path = data_set.ratings_path(&subject, key.session_id, key.task());
-    write_atomically(&path, text.as_bytes()).map_err(ExperimentError::io("write", &path))?;
-
-    let mut sidecar = Sidecar::new(study, set.manifest_sha256(), &key);
-    sidecar.model = Some(traits);
-    sidecar.sittings.push(Sitting {
-        started_at: utc(Timestamp::UNIX_EPOCH, 0.0),
-        first_trial_id: 1,
-        ended_at: Some(utc(Timestamp::UNIX_EPOCH, session.ended_s)),
-        ending: Some(ending_word(Ending::Complete)),
-        station: None,
-        frames: None,
-        focus_losses: 0,
-    });
-    sidecar.write(&DataSet::sidecar_path(&path))?;
-    Ok(session.answers.len())
 }
 
 /// Whether the folder is free, or holds nothing but simulated ratings of this study.

@@ -119,7 +119,8 @@ impl Record {
     }
 }
 
-fn check(happenings: &[Happening], layout: Layout) -> Result<usize, TestCaseError> {
+/// One practice trial and two of the study.
+fn session(layout: Layout) -> Session {
     let phases = [Phase::Practice, Phase::Test, Phase::Test];
     let trials: Vec<Trial> = (1..)
         .zip(phases)
@@ -137,11 +138,15 @@ fn check(happenings: &[Happening], layout: Layout) -> Result<usize, TestCaseErro
         pause_s: 0.05,
         scale: SCALE,
     };
+    Session::new(trials, 0, rules)
+}
+
+fn check(happenings: &[Happening], layout: Layout) -> Result<usize, TestCaseError> {
+    let mut session = session(layout);
     let picture = match layout {
         Layout::Flanking => Picture::Flanked,
         Layout::Sequence => Picture::Test,
     };
-    let mut session = Session::new(trials, 0, rules);
     let mut record = Record::default();
     for &happening in happenings {
         let waiting = session.to_save().copied();
@@ -149,7 +154,7 @@ fn check(happenings: &[Happening], layout: Layout) -> Result<usize, TestCaseErro
         let mut by_click = None;
         match happening {
             Happening::Frames(count, dt_s) => {
-                (0..count).for_each(|_| record.frame(&mut session, dt_s))
+                (0..count).for_each(|_| record.frame(&mut session, dt_s));
             }
             Happening::Press(button) => {
                 session.on(Event::Press(button), record.now_s);

@@ -13,13 +13,18 @@ use crate::sidecar::Station;
 use crate::sitting::Sitting;
 use crate::{Event, ExperimentError, Key, Screen, SessionEnd};
 
+/// What the subject is to see.
+pub(crate) struct Show {
+    pub(crate) plan: SessionPlan,
+    pub(crate) pictures: Pictures,
+    pub(crate) pilot: Option<f64>,
+}
+
 /// A session in its window.
 pub(crate) struct SessionApp {
     sitting: Sitting,
-    plan: SessionPlan,
-    pictures: Pictures,
+    show: Show,
     clock: Clock,
-    pilot: Option<f64>,
     outcome: Outcome,
     gate: Option<Gate>,
     was_focused: bool,
@@ -27,20 +32,11 @@ pub(crate) struct SessionApp {
 }
 
 impl SessionApp {
-    pub(crate) fn new(
-        sitting: Sitting,
-        plan: SessionPlan,
-        pictures: Pictures,
-        clock: Clock,
-        pilot: Option<f64>,
-        outcome: Outcome,
-    ) -> Self {
+    pub(crate) fn new(sitting: Sitting, show: Show, clock: Clock, outcome: Outcome) -> Self {
         Self {
             sitting,
-            plan,
-            pictures,
+            show,
             clock,
-            pilot,
             outcome,
             gate: Some(Gate::default()),
             was_focused: false,
@@ -59,7 +55,7 @@ impl SessionApp {
         let brush = Brush {
             painter: ui.painter(),
             geometry,
-            plan: &self.plan,
+            plan: &self.show.plan,
             pointer: context.input(|input| input.pointer.latest_pos()),
         };
         brush.background();
@@ -70,12 +66,15 @@ impl SessionApp {
                 return Ok(None);
             }
             self.gate = None;
-            check_fit(needed_px(&self.plan, self.pictures.image_px), sizes)?;
+            check_fit(
+                needed_px(&self.show.plan, self.show.pictures.image_px),
+                sizes,
+            )?;
             self.sitting.begin(station(sizes), now_s)?;
         }
 
         let screen = self.sitting.session.screen();
-        let mut events = input::events(context, geometry, screen, self.plan.scale);
+        let mut events = input::events(context, geometry, screen, self.show.plan.scale);
         if context.input(|input| input.viewport().close_requested()) {
             context.send_viewport_cmd(ViewportCommand::CancelClose);
             events.extend((screen != Screen::ConfirmStop).then_some(Event::Key(Key::Escape)));
@@ -92,8 +91,8 @@ impl SessionApp {
                 .finish(ending, self.focus_losses, now_s)
                 .map(Some);
         }
-        brush.screen(session, &self.pictures);
-        if let Some(speed) = self.pilot {
+        brush.screen(session, &self.show.pictures);
+        if let Some(speed) = self.show.pilot {
             brush.pilot(speed);
         }
         if matches!(session.screen(), Screen::Blank | Screen::Exposure(..)) {
@@ -134,7 +133,7 @@ impl eframe::App for SessionApp {
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
-        egui::Color32::from_gray(self.plan.background_srgb).to_normalized_gamma_f32()
+        egui::Color32::from_gray(self.show.plan.background_srgb).to_normalized_gamma_f32()
     }
 }
 

@@ -37,6 +37,12 @@ pub(crate) fn needed_px(plan: &SessionPlan, image_px: [u32; 2]) -> [u32; 2] {
     }
 }
 
+/// A rectangle around a centre, with its corners on whole pixels.
+fn centred(centre: Pos2, size_px: Vec2) -> Rect {
+    let size_px = size_px.round();
+    Rect::from_min_size((centre - size_px / 2.0).floor(), size_px)
+}
+
 impl Geometry {
     /// A length of the design, which is drawn for a screen of 1080 lines.
     pub(crate) fn unit(self) -> f32 {
@@ -57,15 +63,9 @@ impl Geometry {
         Rect::from_min_size(Pos2::ZERO, self.size_px)
     }
 
-    /// A rectangle around a centre, with its corners on whole pixels.
-    fn centred(self, centre: Pos2, size_px: Vec2) -> Rect {
-        let size_px = size_px.round();
-        Rect::from_min_size((centre - size_px / 2.0).floor(), size_px)
-    }
-
     /// Where the images of a picture stand: the test image, or the one that is alone, at the centre.
     pub(crate) fn images(self, picture: Picture, image_px: Vec2, gap_px: f32) -> Vec<(Slot, Rect)> {
-        let centre = self.centred((self.size_px / 2.0).to_pos2(), image_px);
+        let centre = centred((self.size_px / 2.0).to_pos2(), image_px);
         let step = vec2(image_px.x + gap_px, 0.0);
         match picture {
             Picture::Flanked => vec![
@@ -96,7 +96,7 @@ impl Geometry {
 
     fn wide_button(self, x: f32, y: f32) -> Rect {
         let centre = pos2(self.size_px.x * x, self.size_px.y * y);
-        self.centred(centre, vec2(280.0, 76.0) * self.unit())
+        centred(centre, vec2(280.0, 76.0) * self.unit())
     }
 
     fn ratings(self, scale: Scale) -> Vec<(Button, Rect)> {
@@ -109,10 +109,7 @@ impl Geometry {
         let first = self.size_px.x / 2.0 - step * (count - 1.0) / 2.0;
         let place = |(index, rating): (usize, i32)| {
             let centre = pos2(first + step * index as f32, middle);
-            (
-                Button::Rating(rating),
-                self.centred(centre, Vec2::splat(side)),
-            )
+            (Button::Rating(rating), centred(centre, Vec2::splat(side)))
         };
         scale.ratings().enumerate().map(place).collect()
     }

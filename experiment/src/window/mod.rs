@@ -16,8 +16,9 @@ use protocols::Study;
 
 use crate::{ExperimentError, RunOptions, SessionEnd, StimulusSet};
 
-use app::SessionApp;
+use app::{SessionApp, Show};
 use clock::Clock;
+use paint::Pictures;
 
 /// What the window leaves behind when it is closed.
 type Outcome = Rc<RefCell<Option<Result<SessionEnd, ExperimentError>>>>;
@@ -48,16 +49,19 @@ pub fn run(study: &Study, options: &RunOptions) -> Result<SessionEnd, Experiment
         run_and_return: true,
         ..NativeOptions::default()
     };
-    let session_study = study.clone();
+    let protocol = study.protocol.clone();
     let pilot = options.pilot;
     eframe::run_native(
         &title,
         native,
         Box::new(move |creation| {
             let context = &creation.egui_ctx;
-            let plan = session_study.protocol.session;
-            let pictures = paint::Pictures::upload(context, &set, &session_study.protocol.stimuli);
-            let app = SessionApp::new(sitting, plan, pictures, clock, pilot, app_outcome);
+            let show = Show {
+                plan: protocol.session,
+                pictures: Pictures::upload(context, &set, &protocol.stimuli),
+                pilot,
+            };
+            let app = SessionApp::new(sitting, show, clock, app_outcome);
             Ok(Box::new(app))
         }),
     )

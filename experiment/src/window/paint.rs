@@ -79,12 +79,13 @@ impl Brush<'_> {
             Screen::Blank => {}
         }
         for (button, rect) in self.geometry.buttons(screen, self.plan.scale) {
-            self.button(button, rect, session.pressed() == Some(button));
+            self.button(button, rect, session.pressed());
         }
     }
 
     pub(crate) fn pilot(&self, speed: f64) {
-        let words = format!("PILOT     times {speed} x shorter     not a real session     PILOT");
+        let words =
+            format!("PILOT     times {speed}\u{d7} shorter     not a real session     PILOT");
         for band in self.geometry.pilot_bands() {
             self.fill(band, Color32::from_rgb(240, 190, 60));
             let galley = self.galley(&words, 28.0, f32::INFINITY, Align::Center);
@@ -196,10 +197,10 @@ impl Brush<'_> {
         );
     }
 
-    fn button(&self, button: Button, rect_px: Rect, is_pressed: bool) {
+    fn button(&self, button: Button, rect_px: Rect, pressed: Option<Button>) {
         let rect = self.geometry.points(rect_px);
         let is_hovered = self.pointer.is_some_and(|pointer| rect.contains(pointer));
-        let grey = match (is_pressed, is_hovered) {
+        let grey = match (pressed == Some(button), is_hovered) {
             (true, _) => 245,
             (false, true) => 215,
             (false, false) => 180,

@@ -1,5 +1,11 @@
 //! A small stimulus set of our own making, and the study that it belongs to.
 
+#![expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "the values are clamped to 0..=255"
+)]
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -7,7 +13,7 @@ use image::{ExtendedColorType, ImageEncoder as _, codecs::png::PngEncoder};
 use protocols::{Manifest, ManifestFile, ManifestStimulus, Sha256Digest, Stimulus, Study};
 
 /// The paper's study with images of 48 x 40 pixels and short times.
-pub fn small_study(folder: &Path) -> Study {
+pub(crate) fn small_study(folder: &Path) -> Study {
     let paper = Path::new(env!("CARGO_MANIFEST_DIR")).join("../protocols/meyer-liu-1992.toml");
     let text = fs::read_to_string(paper).unwrap();
     let text = text
@@ -20,7 +26,7 @@ pub fn small_study(folder: &Path) -> Study {
 }
 
 /// Writes the images of `study` and their manifest; the fewer rays, the more the checks are disturbed.
-pub fn write_stimuli(study: &Study, folder: &Path) -> PathBuf {
+pub(crate) fn write_stimuli(study: &Study, folder: &Path) -> PathBuf {
     let stimuli = folder.join("stimuli");
     fs::create_dir_all(&stimuli).unwrap();
     let plan = study.protocol.stimuli.clone();
