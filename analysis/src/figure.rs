@@ -72,10 +72,10 @@ impl Figure<'_> {
             "<rect width=\"{WIDTH}\" height=\"{HEIGHT}\" style=\"fill:{paper}\"/>"
         );
         self.axes(&mut svg);
+        self.legend(&mut svg); // Below the curves, so that it never hides a rating.
         for group in ChannelGroup::ALL {
             self.curve(&mut svg, group);
         }
-        self.legend(&mut svg);
         svg.push_str("</svg>\n");
         svg
     }

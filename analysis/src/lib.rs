@@ -16,6 +16,7 @@ mod anova_table;
 mod apa;
 mod cell_matrix;
 mod contrasts;
+mod data_sections;
 mod design;
 mod error;
 mod figure;

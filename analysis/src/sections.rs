@@ -12,7 +12,7 @@ use crate::results_text::{
     effect_name, group_name, key_result, printed_designs, remarks, sphericity,
 };
 use crate::study_analysis::{ConditionMean, StudyAnalysis};
-use crate::study_ratings::{SessionRecord, StudyRatings};
+use crate::study_ratings::StudyRatings;
 use crate::tail::f_tail;
 
 /// All that the sections speak of.
@@ -46,7 +46,7 @@ impl Sections<'_> {
         format!("{:.0}%", 100.0 * self.study.protocol.analysis.confidence)
     }
 
-    fn who(&self) -> String {
+    pub(crate) fn who(&self) -> String {
         self.ratings.who(self.analysis.subjects.len())
     }
 
@@ -391,122 +391,6 @@ impl Sections<'_> {
             table.to_html()
         )
     }
-
-    fn quality(&self) -> String {
-        let mut facts = vec![match self.analysis.incomplete.as_slice() {
-            [] => format!("All {} rated every image.", self.who()),
-            some => {
-                let names: Vec<String> = some.iter().map(ToString::to_string).collect();
-                format!(
-                    "Left out, because ratings are missing: {}.",
-                    names.join(", ")
-                )
-            }
-        }];
-        match self.ratings.observer {
-            Observer::Simulated => {
-                facts.push(
-                    "No image was shown, so there are no late frames and no exposures to check."
-                        .to_owned(),
-                );
-            }
-            Observer::Person => facts.extend(self.timing()),
-        }
-        if !self.ratings.pilots_left_out.is_empty() {
-            facts.push(format!(
-                "Trial runs left out: {}.",
-                escaped(&self.ratings.pilots_left_out.join(", "))
-            ));
-        }
-        facts.extend(
-            self.ratings
-                .warnings
-                .iter()
-                .map(|warning| escaped(warning) + "."),
-        );
-        let facts: Vec<String> = facts
-            .iter()
-            .map(|fact| format!("<li>{fact}</li>\n"))
-            .collect();
-        let columns = [
-            "Subject",
-            "session",
-            "started (UTC)",
-            "rated",
-            "late frames",
-            "median answer",
-            "SHA-256 of the ratings",
-        ];
-        let mut table = Table::new("The sessions.", &columns);
-        for session in &self.ratings.sessions {
-            table.row(&session_cells(session, self.ratings.observer));
-        }
-        format!(
-            "<section>\n<h2>Quality of the data</h2>\n<ul>\n{}</ul>\n{}</section>\n",
-            facts.concat(),
-            table.to_html()
-        )
-    }
-
-    fn timing(&self) -> [String; 2] {
-        let sessions = &self.ratings.sessions;
-        let n_late: u32 = sessions.iter().map(|session| session.missed_frames).sum();
-        let n_trials: usize = sessions
-            .iter()
-            .map(|session| session.trials_with_missed_frames)
-            .sum();
-        let n_all: usize = sessions.iter().map(|session| session.n_rated).sum();
-        let worst_s = (sessions.iter())
-            .map(|session| session.largest_exposure_error_s)
-            .fold(0.0, f64::max);
-        [
-            format!("{n_late} frames came late, in {n_trials} of {n_all} trials."),
-            format!(
-                "The exposure submitted differed from the one asked for by at most {:.0} ms. It is a software time: the onset \
-                 of light was not measured.",
-                1000.0 * worst_s
-            ),
-        ]
-    }
-
-    /// With which versions of the program the ratings were taken, as far as the sidecars say.
-    fn taken_with(&self) -> String {
-        let mut versions: Vec<&str> = (self.ratings.sessions.iter())
-            .filter_map(|session| session.sidecar.acuity_version.as_deref())
-            .collect();
-        versions.sort_unstable();
-        versions.dedup();
-        if versions.is_empty() {
-            return String::new();
-        }
-        format!("; ratings taken with {}", escaped(&versions.join(" and ")))
-    }
-
-    fn provenance(&self) -> String {
-        let protocol = self
-            .study
-            .path
-            .file_name()
-            .map_or_else(String::new, |name| escaped(&name.to_string_lossy()));
-        let entries = [
-            ("Protocol", format!("{protocol}, SHA-256 <code>{}</code>", self.study.sha256)),
-            ("Ratings", format!("{} files, SHA-256 of their digests <code>{}</code>", self.ratings.sessions.len(), self.ratings.sha256())),
-            ("Program", format!("Acuity {}{}", env!("CARGO_PKG_VERSION"), self.taken_with())),
-            (
-                "Files",
-                "<code>anova.json</code>, <code>anova.csv</code>, <code>means.csv</code>, <code>figure-10.svg</code>, \
-                 <code>figure-10.png</code> beside this page"
-                    .to_owned(),
-            ),
-        ];
-        let list: Vec<String> = (entries.iter())
-            .map(|(term, text)| format!("<dt>{term}</dt><dd>{text}</dd>\n"))
-            .collect();
-        format!(
-            "<section>\n<h2>Where this comes from</h2>\n<dl>\n{}</dl>\n</section>\n",
-            list.concat()
-        )
-    }
 }
 
 fn anova_cells(row: &EffectRow) -> Vec<String> {
@@ -542,26 +426,6 @@ fn mean_cells(condition: Option<&ConditionMean>) -> [String; 4] {
             .map_or_else(|| "–".to_owned(), |sd| format!("{sd:.2}")),
         half(condition.half_between),
         half(condition.half_within),
-    ]
-}
-
-fn session_cells(session: &SessionRecord, observer: Observer) -> Vec<String> {
-    let started: String = match observer {
-        Observer::Person => session.started_at.chars().take(16).collect(),
-        Observer::Simulated => "virtual clock".to_owned(),
-    };
-    let pilot = if session.is_pilot { " (pilot)" } else { "" };
-    vec![
-        format!("{}{pilot}", session.subject),
-        session.session.to_string(),
-        escaped(&started.replace('T', " ")),
-        session.n_rated.to_string(),
-        session.missed_frames.to_string(),
-        format!("{:.1} s", session.median_response_time_s),
-        format!(
-            "<code>{}…</code>",
-            session.sha256.as_str().get(..12).unwrap_or_default()
-        ),
     ]
 }
 
