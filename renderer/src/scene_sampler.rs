@@ -105,14 +105,9 @@ impl<'scene> SceneSampler<'scene> {
             return (0.0, 0.0);
         }
         let glint = highlight.map_or(0.0, |highlight| {
-            let cos_alpha = arrival.towards.dot(surface.mirrored);
-            if cos_alpha <= 0.0 {
-                0.0
-            } else {
-                highlight.strength * libm::pow(cos_alpha, highlight.exponent)
-            }
+            highlight.at(arrival.towards.dot(surface.mirrored))
         });
-        if body_share == 0.0 && glint < LEAST_SHARE {
+        if body_share == 0.0 && glint == 0.0 {
             return (0.0, 0.0);
         }
         let shadow_ray = Ray {

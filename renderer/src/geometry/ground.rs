@@ -10,7 +10,7 @@ pub(crate) struct Ground {
 
 impl Ground {
     #[inline]
-    pub(crate) fn hit(&self, ray: &Ray, span: Span) -> Option<Hit> {
+    pub(crate) fn hit(self, ray: &Ray, span: Span) -> Option<Hit> {
         let distance_m = (self.height_m - ray.origin.z) / ray.direction.z;
         span.holds(distance_m).then_some(Hit {
             distance_m,

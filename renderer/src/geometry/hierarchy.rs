@@ -3,12 +3,12 @@
 //! Promises what trying every shape gives, bit for bit: the nearest hit, and of equal hits the one of the
 //! shape that comes first.
 //!
-//! Source: the surface-area heuristic of Goldsmith & Salmon (1987) and MacDonald & Booth (1990).
+//! Source: the surface-area heuristic of Goldsmith & Salmon (1987) and Mac Donald & Booth (1990).
 
 use super::{Bounds, Hit, Ray, Shape, Span, Vector};
 
 /// No path from the root is longer, so that a traversal needs a stack of this size only.
-const MAX_DEPTH: usize = 60;
+const MAX_DEPTH: usize = 28;
 /// What it costs to visit a node, in tests against a shape.
 const VISIT_COST: f64 = 0.5;
 

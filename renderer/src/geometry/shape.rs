@@ -71,3 +71,228 @@ impl Shape {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::Hierarchy;
+    use super::*;
+
+    /// A stream of numbers from 0 to 1 that is the same everywhere: Knuth's MMIX generator.
+    struct Stream(u64);
+
+    impl Stream {
+        fn unit(&mut self) -> f64 {
+            let Self(state) = self;
+            *state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (*state >> 11) as f64 / (1_u64 << 53) as f64
+        }
+
+        fn place(&mut self, size_m: f64) -> Vector {
+            let mut coordinate = || size_m * (2.0 * self.unit() - 1.0);
+            Vector::new(coordinate(), coordinate(), coordinate())
+        }
+
+        fn ray(&mut self) -> Ray {
+            let origin = self.place(4.0);
+            let direction = (self.place(1.0) - origin).normalized();
+            Ray { origin, direction }
+        }
+    }
+
+    fn first_hit(shape: &Shape, ray: &Ray) -> Option<Hit> {
+        shape.hit(ray, Span::up_to(f64::INFINITY))
+    }
+
+    /// Where a ray first changes between inside and outside, found by small steps and halving.
+    fn by_marching(ray: &Ray, is_inside: &dyn Fn(Vector) -> bool) -> Option<f64> {
+        let (step_m, starts_inside) = (0.002, is_inside(ray.origin));
+        let steps = 1..4_000;
+        let crossed = steps.map(|step| f64::from(step) * step_m);
+        let mut far = crossed
+            .into_iter()
+            .find(|&distance| is_inside(ray.at(distance)) != starts_inside)?;
+        let mut near = far - step_m;
+        for _ in 0..50 {
+            let middle = 0.5 * (near + far);
+            if is_inside(ray.at(middle)) == starts_inside {
+                near = middle;
+            } else {
+                far = middle;
+            }
+        }
+        Some(far)
+    }
+
+    type Definition = Box<dyn Fn(Vector) -> bool>;
+
+    /// Solids with their definitions as sets of places.
+    fn solids() -> Vec<(Shape, Definition)> {
+        let base = Vector::new(-0.3, 0.2, -0.5);
+        let axis = Vector::new(1.0, 2.0, 2.0) * (1.0 / 3.0);
+        let (height_m, radius_m) = (1.2, 0.6);
+        let along = move |place: Vector| (place - base).dot(axis);
+        let aside = move |place: Vector| (place - base - axis * along(place)).length();
+        let turned = move |place: Vector| {
+            // By 30° from x towards y: cos² = 3/4, sin = 1/2.
+            let (cos, sin) = (0.75_f64.sqrt(), 0.5);
+            let x = cos * place.x + sin * place.y;
+            let y = cos * place.y - sin * place.x;
+            x.abs() <= 0.5 && y.abs() <= 0.7 && place.z.abs() <= 0.3
+        };
+        let size = Vector::new(1.0, 1.4, 0.6);
+        vec![
+            (
+                Shape::Sphere(Sphere {
+                    center: base,
+                    radius_m,
+                }),
+                Box::new(move |place| (place - base).length() <= radius_m),
+            ),
+            (
+                Shape::Cuboid(Cuboid::new(Vector::default(), size, 30.0)),
+                Box::new(turned),
+            ),
+            (
+                Shape::Cylinder(Cylinder::between(base, base + axis * height_m, radius_m)),
+                Box::new(move |place| {
+                    (0.0..=height_m).contains(&along(place)) && aside(place) <= radius_m
+                }),
+            ),
+            (
+                Shape::Cone(Cone::between(base, base + axis * height_m, radius_m)),
+                Box::new(move |place| {
+                    let part = along(place) / height_m;
+                    (0.0..=1.0).contains(&part) && aside(place) <= radius_m * (1.0 - part)
+                }),
+            ),
+        ]
+    }
+
+    #[test]
+    fn a_hit_is_where_small_steps_find_it() {
+        let mut stream = Stream(1);
+        for (shape, is_inside) in solids() {
+            let mut hits = 0;
+            for _ in 0..400 {
+                let ray = stream.ray();
+                let marched = by_marching(&ray, &*is_inside);
+                let hit = first_hit(&shape, &ray).filter(|hit| hit.distance_m < 7.9);
+                match (hit, marched) {
+                    (Some(hit), Some(marched)) => {
+                        hits += 1;
+                        assert!((hit.distance_m - marched).abs() < 1e-9, "{shape:?} {ray:?}");
+                    }
+                    (None, None) => {}
+                    // A corner that is thinner than a step along the ray.
+                    (Some(hit), None) => assert!(
+                        !is_inside(ray.at(hit.distance_m + 0.004)),
+                        "{shape:?} {ray:?}"
+                    ),
+                    (None, Some(_)) => panic!("missed {shape:?} by {ray:?}"),
+                }
+            }
+            assert!(hits > 50, "only {hits} hits of {shape:?}");
+        }
+    }
+
+    #[test]
+    fn a_normal_points_out_of_the_solid() {
+        let mut stream = Stream(2);
+        for (shape, is_inside) in solids() {
+            for _ in 0..400 {
+                let ray = stream.ray();
+                let Some(hit) = first_hit(&shape, &ray) else {
+                    continue;
+                };
+                let place = ray.at(hit.distance_m);
+                let normal = shape.normal(place, hit.part);
+                assert!((normal.length() - 1.0).abs() < 1e-12);
+                assert!(!is_inside(place + normal * 1e-6), "{shape:?} {ray:?}");
+                assert!(is_inside(place - normal * 1e-6), "{shape:?} {ray:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_ray_along_the_axis_of_a_cylinder_meets_its_end() {
+        let cylinder = Cylinder::between(Vector::default(), Vector::new(0.0, 0.0, 2.0), 0.5);
+        let ray = Ray {
+            origin: Vector::new(0.1, 0.2, 5.0),
+            direction: Vector::new(0.0, 0.0, -1.0),
+        };
+        let hit = first_hit(&Shape::Cylinder(cylinder), &ray);
+        let expected = Hit {
+            distance_m: 3.0,
+            part: Part::Cap,
+        };
+        assert_eq!(hit, Some(expected));
+    }
+
+    #[test]
+    fn flat_shapes_end_at_their_edges() {
+        let down = |x: f64, y: f64| Ray {
+            origin: Vector::new(x, y, 2.0),
+            direction: Vector::new(0.0, 0.0, -1.0),
+        };
+        let disc = Shape::Disc(Disc::new(Vector::default(), Vector::UP, 0.5));
+        let edges = (Vector::new(1.0, 0.0, 0.0), Vector::new(0.0, 0.5, 0.0));
+        let rectangle = Shape::Rectangle(Rectangle::new(Vector::default(), edges.0, edges.1));
+        assert!(first_hit(&disc, &down(0.3, 0.399)).is_some());
+        assert!(first_hit(&disc, &down(0.3, 0.401)).is_none());
+        assert!(first_hit(&rectangle, &down(0.999, 0.499)).is_some());
+        assert!(first_hit(&rectangle, &down(0.5, 0.501)).is_none());
+        assert!(first_hit(&rectangle, &down(-0.001, 0.2)).is_none());
+    }
+
+    #[test]
+    fn the_hierarchy_finds_what_trying_every_shape_finds() {
+        let mut stream = Stream(3);
+        let mut shapes = vec![Shape::Ground(Ground { height_m: -1.0 })];
+        for _ in 0..100 {
+            let (one, radius_m) = (stream.place(2.0), 0.02 + 0.2 * stream.unit());
+            let other = one + stream.place(0.5);
+            let turn_deg = 90.0 * stream.unit();
+            let normal = (other - one).normalized();
+            let size = Vector::new(radius_m, 0.1, 0.3);
+            let edges = (Vector::new(radius_m, 0.0, 0.0), Vector::new(0.0, 0.0, 0.2));
+            shapes.extend([
+                Shape::Sphere(Sphere {
+                    center: one,
+                    radius_m,
+                }),
+                Shape::Cuboid(Cuboid::new(one, size, turn_deg)),
+                Shape::Cylinder(Cylinder::between(one, other, 0.1 * radius_m)),
+                Shape::Cone(Cone::between(other, one, radius_m)),
+                Shape::Disc(Disc::new(other, normal, radius_m)),
+                Shape::Rectangle(Rectangle::new(other, edges.0, edges.1)),
+            ]);
+        }
+        // The same rectangle twice: of equal hits the first shape's counts.
+        shapes.push(shapes[6]);
+        let hierarchy = Hierarchy::over(shapes.clone());
+        let mut hits = 0;
+        for _ in 0..20_000 {
+            let ray = stream.ray();
+            let tried = (0..)
+                .zip(&shapes)
+                .filter_map(|(index, shape)| first_hit(shape, &ray).map(|hit| (index, hit)));
+            let nearest = tried.reduce(|best: (u32, Hit), next| {
+                if next.1.distance_m < best.1.distance_m {
+                    next
+                } else {
+                    best
+                }
+            });
+            let span = Span::up_to(f64::INFINITY);
+            assert_eq!(hierarchy.nearest(&ray, span), nearest);
+            assert_eq!(hierarchy.is_blocked(&ray, span), nearest.is_some());
+            if let Some((_, hit)) = nearest {
+                hits += 1;
+                assert!(!hierarchy.is_blocked(&ray, Span::up_to(hit.distance_m)));
+            }
+        }
+        assert!(hits > 10_000, "only {hits} hits");
+    }
+}

@@ -38,12 +38,17 @@ pub(crate) enum PatternLayout {
     StripesAcrossV { size_m: f64 },
 }
 
-/// The gloss of a light.
+/// The gloss of a light: `strength · (cos α)^exponent`, Phong (1975).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Highlight {
-    pub(crate) strength: f64,
-    pub(crate) exponent: f64,
+    strength: f64,
+    exponent: f64,
+    /// Below this cosine the highlight is fainter than [`FAINTEST_HIGHLIGHT`] and left out.
+    least_cos: f64,
 }
+
+/// A highlight this faint under the illuminance 1 is a hundredth of an 8-bit step in black.
+const FAINTEST_HIGHLIGHT: f64 = 3e-6;
 
 /// What mirrors the surroundings.
 #[derive(Clone, Copy, Debug)]
@@ -56,6 +61,32 @@ pub(crate) enum Mirror {
     },
     /// A clear coat: Fresnel's formula, the same at every wavelength.
     Coat { refractive_index: f64 },
+}
+
+impl Highlight {
+    /// A highlight that is `strength` times as bright in its middle as a white surface that faces the light.
+    pub(crate) fn new(strength: f64, exponent: f64) -> Self {
+        let least_cos = if strength > FAINTEST_HIGHLIGHT {
+            libm::pow(FAINTEST_HIGHLIGHT / strength, exponent.recip())
+        } else {
+            1.0
+        };
+        Self {
+            strength,
+            exponent,
+            least_cos,
+        }
+    }
+
+    /// How bright the highlight is, given the cosine of the angle from the mirrored direction to the light.
+    #[inline]
+    pub(crate) fn at(&self, cos_alpha: f64) -> f64 {
+        if cos_alpha > self.least_cos {
+            self.strength * libm::pow(cos_alpha, self.exponent)
+        } else {
+            0.0
+        }
+    }
 }
 
 impl Body {

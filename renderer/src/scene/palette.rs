@@ -94,7 +94,7 @@ impl Palette {
     }
 
     fn add(&mut self, place: Table<'_>, name: &str, material: Material) -> Result<(), InputError> {
-        let index = u16::try_from(self.materials.len()).map_err(|_| too_many(place))?;
+        let index = u16::try_from(self.materials.len()).map_err(|error| too_many(place, error))?;
         self.materials.push(material);
         match self.material_of_name.insert(name.to_owned(), index) {
             None => Ok(()),
@@ -119,7 +119,7 @@ impl Palette {
         if known.is_none() {
             self.reflectances.push(spectrum);
         }
-        ReflectanceIndex::try_from(index).map_err(|_| too_many(place))
+        ReflectanceIndex::try_from(index).map_err(|error| too_many(place, error))
     }
 
     fn body(
@@ -269,16 +269,16 @@ fn reflectance_of_points(
 }
 
 fn highlight(place: Table<'_>, strength: f64, exponent: f64) -> Result<Highlight, InputError> {
-    Ok(Highlight {
-        strength: place.number_within("highlight", strength, (0.0, 100.0))?,
-        exponent: place.number_within("exponent", exponent, (1.0, 1e6))?,
-    })
+    let strength = place.number_within("highlight", strength, (0.0, 100.0))?;
+    let exponent = place.number_within("exponent", exponent, (1.0, 1e6))?;
+    Ok(Highlight::new(strength, exponent))
 }
 
 fn alone(place: Table<'_>, missing: &str, given: &str) -> InputError {
     place.error(missing, "nothing", format!("a number, as {given} is given"))
 }
 
-fn too_many(place: Table<'_>) -> InputError {
-    place.error("(the table)", "more than 65536 of its kind", "fewer")
+fn too_many(place: Table<'_>, error: std::num::TryFromIntError) -> InputError {
+    let found = format!("more than 65536 of its kind ({error})");
+    place.error("(the table)", found, "fewer")
 }

@@ -1,4 +1,4 @@
-//! Measured reflectances that a scene may name: the ColorChecker.
+//! Measured reflectances that a scene may name: the `ColorChecker`.
 
 use std::sync::LazyLock;
 

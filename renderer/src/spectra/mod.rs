@@ -4,6 +4,8 @@
 //! wavelengths is divided by that of ȳ over 360–830 nm, so that a spectrum of constant 1 has Y = 1.
 
 pub(crate) mod cie;
+#[cfg(test)]
+mod colour_difference;
 pub(crate) mod emission;
 pub(crate) mod measured;
 pub(crate) mod quadrature;

@@ -121,3 +121,123 @@ impl WavelengthRule {
 fn dot(left: &[f64], right: &[f64]) -> f64 {
     left.iter().zip(right).map(|(l, r)| l * r).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::colour_difference::{ciede2000, lab_from_xyz};
+    use super::super::{Spectrum, measured};
+    use super::*;
+    use crate::opponent::xyz_from_ac1c2;
+
+    /// The channels of a surface under a light, summed at 1 nm: the slow way that judges the rules.
+    fn at_1_nm(surface: &Spectrum, light: &Emission) -> PerChannel<f64> {
+        PerChannel::from_fn(|channel| {
+            let products = sensitivities().iter().map(|row| {
+                let nm = row.wavelength_nm;
+                row.ac1c2[channel] * surface.at(nm) * light.at(nm)
+            });
+            products.sum::<f64>() / cie::sum_of_y()
+        })
+    }
+
+    fn by_rule(rule: &WavelengthRule, powers: &[f64], surface: &Spectrum) -> PerChannel<f64> {
+        PerChannel::from_fn(|channel| {
+            let nodes = rule.nodes_nm.iter().zip(&rule.weights[channel]);
+            nodes
+                .zip(powers)
+                .map(|((&nm, weight), power)| weight * power * surface.at(nm))
+                .sum()
+        })
+    }
+
+    /// The mean and the largest CIEDE2000 over the `ColorChecker`, with light as emitted or as corrected.
+    fn colour_errors(quadrature: Quadrature, light: &str, corrected: Light) -> (f64, f64) {
+        let (rule, light) = (
+            WavelengthRule::new(quadrature),
+            Emission::named(light).unwrap(),
+        );
+        let powers = match corrected {
+            Light::AsEmitted => rule.nodes_nm.iter().map(|&nm| light.at(nm)).collect(),
+            Light::Corrected => rule.power_at_nodes(&light),
+        };
+        let white = xyz_from_ac1c2(light.ac1c2());
+        let lab = |channels| lab_from_xyz(xyz_from_ac1c2(channels), white);
+        let errors = measured::names().into_iter().map(|name| {
+            let patch = measured::reflectance(&name).unwrap();
+            let exact = lab(at_1_nm(&patch, &light));
+            ciede2000(lab(by_rule(&rule, &powers, &patch)), exact)
+        });
+        let errors: Vec<f64> = errors.collect();
+        let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+        (mean, errors.into_iter().fold(0.0, f64::max))
+    }
+
+    #[derive(Clone, Copy)]
+    enum Light {
+        AsEmitted,
+        Corrected,
+    }
+
+    #[test]
+    fn the_rules_are_as_far_off_as_colour_science_says() {
+        // `renderer/data/quadrature_errors.py` (colour-science 0.4.7, numpy).
+        for (quadrature, light, mean, most) in [
+            (Quadrature::Bands(8), "E", 0.457_479_824, 1.340_461_600),
+            (Quadrature::Bands(8), "D65", 0.740_370_178, 1.676_121_150),
+            (Quadrature::Bands(16), "E", 0.131_008_910, 0.279_503_191),
+            (Quadrature::Bands(16), "D65", 0.211_886_586, 0.366_456_692),
+            (Quadrature::Bands(16), "A", 0.183_561_145, 0.399_346_863),
+            (Quadrature::Meyer1988, "E", 3.559_483_020, 17.885_503_102),
+            (Quadrature::Meyer1988, "D65", 4.662_976_023, 10.677_502_620),
+            (Quadrature::Meyer1988, "A", 7.484_907_977, 28.457_472_166),
+        ] {
+            let ours = colour_errors(quadrature, light, Light::AsEmitted);
+            assert!((ours.0 - mean).abs() < 1e-6, "{light}: mean {}", ours.0);
+            assert!((ours.1 - most).abs() < 1e-6, "{light}: most {}", ours.1);
+        }
+    }
+
+    #[test]
+    fn correcting_the_light_makes_colours_better_and_white_exact() {
+        for quadrature in [Quadrature::Bands(16), Quadrature::Meyer1988] {
+            let (raw, _) = colour_errors(quadrature, "D65", Light::AsEmitted);
+            let (mean, _) = colour_errors(quadrature, "D65", Light::Corrected);
+            assert!(mean < raw, "{mean} is not below {raw}");
+        }
+        for quadrature in [
+            Quadrature::Bands(3),
+            Quadrature::Bands(16),
+            Quadrature::Bands(301),
+            Quadrature::Meyer1988,
+        ] {
+            for light in ["D65", "A", "E", "blackbody 5000 K"] {
+                let (rule, light) = (
+                    WavelengthRule::new(quadrature),
+                    Emission::named(light).unwrap(),
+                );
+                let white = Spectrum::constant(1.0);
+                let ours = by_rule(&rule, &rule.power_at_nodes(&light), &white);
+                let exact = light.ac1c2();
+                for channel in Channel::ALL {
+                    assert!((ours[channel] - exact[channel]).abs() < 1e-12);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn meyers_rule_shades_a_without_the_wavelength_of_c2() {
+        let rule = WavelengthRule::new(Quadrature::Meyer1988);
+        assert_eq!(rule.nodes_of(Channel::A), [1, 2, 3]);
+        assert_eq!(rule.nodes_of(Channel::C1), [1, 3]);
+        assert_eq!(rule.nodes_of(Channel::C2), [0]);
+    }
+
+    #[test]
+    fn a_light_of_one_line_keeps_its_powers() {
+        let line = Spectrum::of_points(vec![[588.0, 0.0], [589.0, 1.0], [590.0, 0.0]]);
+        let light = Emission::of(line).unwrap();
+        let rule = WavelengthRule::new(Quadrature::Meyer1988);
+        assert_eq!(rule.power_at_nodes(&light), [0.0; 4]);
+    }
+}

@@ -1,0 +1,223 @@
+//! What a scene must give by a formula.
+
+use super::*;
+
+/// A camera 2 m over the ground that sees x and y from −2 to 2 m: x to the right, y up.
+const FROM_ABOVE: &str = r"
+camera = { position_m = [0, 0, 2], look_at_m = [0, 0, 0], up = [0, 1, 0], vertical_field_of_view_deg = 90 }
+";
+
+/// Single precision, summed over 16 bands.
+const ROUNDING: f64 = 1e-6;
+
+fn ground(head: &str, light: &str) -> Scene {
+    scene(&format!(
+        "{head}{FROM_ABOVE}ground = [{{ material = \"grey\", height_m = 0 }}]\n{light}\n\
+         [diffuse.grey]\nreflectance = [[400, 0.5]]\n"
+    ))
+}
+
+fn assert_near(ours: f64, expected: f64) {
+    assert!(
+        (ours - expected).abs() < ROUNDING,
+        "{ours} is not {expected}"
+    );
+}
+
+#[test]
+fn a_lambertian_plane_under_a_point_light_is_i_cos_theta_over_d_squared() {
+    let light = r#"point_light = [{ position_m = [1, 0, 3], emittance = "D65", intensity = 6 }]"#;
+    let scene = ground("", light);
+    for quadrature in [
+        Quadrature::Bands(16),
+        Quadrature::Bands(5),
+        Quadrature::Meyer1988,
+    ] {
+        let sampler = scene.sampler(quadrature, [100, 100]);
+        for (x, y) in [(0.5, 0.5), (0.75, 0.5), (0.1, 0.9)] {
+            let (ground_x, ground_y) = (4.0 * x - 2.0, 2.0 - 4.0 * y);
+            let d_squared = (ground_x - 1.0_f64).powi(2) + ground_y * ground_y + 9.0;
+            let illuminance = 6.0 * 3.0 / d_squared.powf(1.5);
+            for (channel, of_light) in Channel::ALL.into_iter().zip(D65) {
+                assert_near(value(&sampler, x, y, channel), 0.5 * illuminance * of_light);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_distant_light_goes_with_the_cosine() {
+    let light = r#"distant_light = [{ from = [3, 0, 4], emittance = "D65", illuminance = 0.7 }]"#;
+    let scene = ground("", light);
+    assert_near(
+        value(&sampler(&scene), 0.2, 0.3, Channel::A),
+        0.5 * 0.7 * 0.8 * D65[0],
+    );
+}
+
+#[test]
+fn a_wall_gets_half_of_the_ambient_light_of_the_ground() {
+    // The wall stands at x = 1 and is seen beside the ground; the one light is behind it.
+    let rest = r#"
+rectangle = [{ material = "grey", corner_m = [1, -9, 0], edge_u_m = [0, 18, 0], edge_v_m = [0, 0, 1] }]
+distant_light = [{ from = [1, 0, 0.0001], emittance = "E", illuminance = 1e-9 }]
+ambient = { emittance = "D65", illuminance = 0.4 }"#;
+    let scene = ground("", rest);
+    let sampler = sampler(&scene);
+    assert_near(value(&sampler, 0.5, 0.5, Channel::A), 0.5 * 0.4 * D65[0]);
+    assert_near(value(&sampler, 0.9, 0.5, Channel::A), 0.25 * 0.4 * D65[0]);
+}
+
+#[test]
+fn a_shadow_ends_where_similar_triangles_say() {
+    // A point light at 4 m over x = 0, an edge at (0.5, 1 m): the shadow starts at x = 0.5 · 4/3.
+    let rest = r#"
+rectangle = [{ material = "grey", corner_m = [0.5, -9, 1], edge_u_m = [0.1, 0, 0], edge_v_m = [0, 18, 0] }]
+point_light = [{ position_m = [0, 0, 4], emittance = "D65", intensity = 1 }]"#;
+    let scene = ground("", rest);
+    let sampler = sampler(&scene);
+    let at_ground = |x_m: f64| value(&sampler, (x_m + 2.0) / 4.0, 0.5, Channel::A);
+    let start_m = 0.5 * 4.0 / 3.0;
+    assert!(at_ground(start_m - 1e-5) > 0.01);
+    assert_eq!(at_ground(start_m + 1e-5), 0.0);
+}
+
+#[test]
+fn a_light_behind_a_surface_and_a_shadow_give_black() {
+    let light = r#"point_light = [{ position_m = [0, 0, -1], emittance = "D65", intensity = 9 }]"#;
+    let scene = ground("", light);
+    assert_eq!(value(&sampler(&scene), 0.5, 0.5, Channel::A), 0.0);
+}
+
+#[test]
+fn a_mirror_shows_what_stands_opposite_times_its_reflectance() {
+    // A mirror at 45° under the camera sends its ray against x to a wall; light falls on that over the mirror,
+    // at an angle whose cosine is 0.8.
+    let text = format!(
+        r#"{FROM_ABOVE}
+rectangle = [
+    {{ material = "silver", corner_m = [-1, -1, -1], edge_u_m = [2, 0, 2], edge_v_m = [0, 2, 0] }},
+    {{ material = "wall", corner_m = [-5, -9, -9], edge_u_m = [0, 18, 0], edge_v_m = [0, 0, 18] }},
+]
+distant_light = [{{ from = [4, 0, 3], emittance = "D65", illuminance = 0.9 }}]
+[mirror.silver]
+reflectance = [[400, 0.6]]
+[diffuse.wall]
+reflectance = [[400, 0.5]]
+"#
+    );
+    let scene = scene(&text);
+    assert_near(
+        value(&sampler(&scene), 0.5, 0.5, Channel::A),
+        0.6 * 0.5 * 0.9 * 0.8 * D65[0],
+    );
+}
+
+#[test]
+fn a_clear_coat_takes_its_share_from_the_body() {
+    // Straight down a coat of index 1.5 mirrors ((1.5 − 1)/(1.5 + 1))² = 0.04 of what is above, which is
+    // black: a rectangle that faces down gets no ambient light. The body keeps 0.96.
+    let text = format!(
+        r#"{FROM_ABOVE}
+disc = [{{ material = "coated", center_m = [0, 0, 0], normal = [0, 0, 1], radius_m = 9 }}]
+rectangle = [{{ material = "grey", corner_m = [-9, -9, 8], edge_u_m = [18, 0, 0], edge_v_m = [0, 18, 0] }}]
+ambient = {{ emittance = "D65", illuminance = 0.4 }}
+point_light = [{{ position_m = [0, 0, -1], emittance = "D65", intensity = 1e-9 }}]
+[glossy.coated]
+reflectance = [[400, 0.5]]
+highlight = 0
+exponent = 1
+refractive_index = 1.5
+[diffuse.grey]
+reflectance = [[400, 0.5]]
+"#
+    );
+    let scene = scene(&text);
+    assert_near(
+        value(&sampler(&scene), 0.5, 0.5, Channel::A),
+        0.96 * 0.5 * 0.4 * D65[0],
+    );
+}
+
+#[test]
+fn a_highlight_is_phongs_power_of_the_cosine() {
+    // Straight down onto a black gloss; the light from 60° aside: cos α = 1/2, its cube 1/8.
+    let text = format!(
+        r#"{FROM_ABOVE}
+disc = [{{ material = "gloss", center_m = [0, 0, 0], normal = [0, 0, 1], radius_m = 9 }}]
+distant_light = [{{ from = [1.7320508075688772, 0, 1], emittance = "D65", illuminance = 0.8 }}]
+[glossy.gloss]
+reflectance = [[400, 0.0]]
+highlight = 0.5
+exponent = 3
+"#
+    );
+    let scene = scene(&text);
+    assert_near(
+        value(&sampler(&scene), 0.5, 0.5, Channel::A),
+        0.5 * 0.8 * 0.125 * D65[0],
+    );
+}
+
+#[test]
+fn a_sphere_covers_the_part_of_the_screen_that_it_should() {
+    // A sphere of radius 1 at 2 m looks asin(1/2) = 30° wide to each side: tan 30° of the half screen.
+    let text = format!(
+        r#"{FROM_ABOVE}
+sphere = [{{ material = "grey", center_m = [0, 0, 0], radius_m = 1 }}]
+ambient = {{ emittance = "D65", illuminance = 1 }}
+point_light = [{{ position_m = [0, 0, 9], emittance = "D65", intensity = 1 }}]
+[diffuse.grey]
+reflectance = [[400, 0.5]]
+"#
+    );
+    let scene = scene(&text);
+    let sampler = sampler(&scene);
+    let edge = 0.5 + 0.5 * 30.0_f64.to_radians().tan();
+    assert!(value(&sampler, edge - 1e-6, 0.5, Channel::A) > 0.1);
+    assert_eq!(value(&sampler, edge + 1e-6, 0.5, Channel::A), 0.0);
+    assert!(value(&sampler, 0.5, 1.0 - edge + 1e-6, Channel::A) > 0.1);
+    assert_eq!(value(&sampler, 0.5, 1.0 - edge - 1e-6, Channel::A), 0.0);
+}
+
+#[test]
+fn a_checker_changes_where_its_squares_meet() {
+    let text = format!(
+        r#"{FROM_ABOVE}
+ground = [{{ material = "tiles", height_m = 0 }}]
+distant_light = [{{ from = [0, 0, 1], emittance = "D65", illuminance = 1 }}]
+[diffuse.tiles]
+reflectance = [[400, 0.8]]
+checker = {{ reflectance = [[400, 0.1]], size_m = 0.5 }}
+"#
+    );
+    let scene = scene(&text);
+    let sampler = sampler(&scene);
+    for (x_m, y_m, reflectance) in [
+        (0.1, 0.1, 0.8),
+        (0.499, 0.499, 0.8),
+        (0.501, 0.499, 0.1),
+        (0.501, 0.501, 0.8),
+        (-0.001, 0.1, 0.1),
+        (-0.001, -0.001, 0.8),
+    ] {
+        let (x, y) = ((x_m + 2.0) / 4.0, (2.0 - y_m) / 4.0);
+        assert_near(value(&sampler, x, y, Channel::A), reflectance * D65[0]);
+    }
+}
+
+#[test]
+fn the_wavelengths_that_are_shaded_are_those_that_count() {
+    let light = r#"point_light = [{ position_m = [1, 0, 3], emittance = "D65", intensity = 6 }]"#;
+    let scene = ground("", light);
+    let meyer = scene.sampler(Quadrature::Meyer1988, [100, 100]);
+    assert_eq!(
+        Channel::ALL.map(|channel| meyer.wavelengths(channel)),
+        [3, 2, 1]
+    );
+    let bands = scene.sampler(Quadrature::Bands(16), [100, 100]);
+    assert_eq!(
+        Channel::ALL.map(|channel| bands.wavelengths(channel)),
+        [16; 3]
+    );
+}
