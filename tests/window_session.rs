@@ -141,22 +141,20 @@ fn stop(display: &Display, child: Child) {
     assert!(text.contains("stopped after 0 of 30 trials"), "{text}");
 }
 
-#[test]
-fn the_screen_holds_the_very_bytes_of_the_images_on_neutral_grey() {
-    let Some(display) = Display::open(Manager::Openbox) else {
-        return;
-    };
-    let place = Place::new();
-    let child = place.session(&display, "P1", "2").spawn().unwrap();
+/// The test image of the first practice trial between the anchors, byte for byte, and grey all around,
+/// with `scale` pixels for each point of the desktop.
+fn check_exposure(display: &Display, place: &Place, subject: &str, scale: &str) {
+    let mut session = place.session(display, subject, "2");
+    let child = session
+        .env("WINIT_X11_SCALE_FACTOR", scale)
+        .spawn()
+        .unwrap();
     display.wait_for("the instructions", is_page);
 
-    let second = place.session(&display, "P1", "2").output().unwrap();
+    let second = place.session(display, subject, "2").output().unwrap();
     assert_eq!(second.status.code(), Some(1));
     let text = String::from_utf8(second.stderr).unwrap();
-    assert!(
-        text.contains("subject P1 is in a session already"),
-        "{text}"
-    );
+    assert!(text.contains("is in a session already"), "{text}");
 
     display.click(CONTINUE);
     let pixels = |id: &str| png_pixels(&place.stimuli().join(format!("{id}.png")));
@@ -173,8 +171,8 @@ fn the_screen_holds_the_very_bytes_of_the_images_on_neutral_grey() {
         images.all(|(&corner, image)| shot.part(corner, [320, 320]) == *image)
     };
     let shot = display.wait_for("the three images, every byte of them", is_there);
-    let bands = [0..53, SIZE[1] - 53..SIZE[1]];
-    for y in (0..SIZE[1]).filter(|y| !bands.iter().any(|band| band.contains(y))) {
+    // Above and below are the bands that say PILOT.
+    for y in 54..SIZE[1] - 54 {
         for x in 0..SIZE[0] {
             let is_image = corners.iter().any(|&[left, top]| {
                 (left..left + 320).contains(&x) && (top..top + 320).contains(&y)
@@ -182,8 +180,19 @@ fn the_screen_holds_the_very_bytes_of_the_images_on_neutral_grey() {
             assert!(is_image || shot.pixel([x, y]) == GREY, "pixel {x}, {y}");
         }
     }
-    stop(&display, child);
-    assert!(place.rows("P1").is_empty());
+    stop(display, child);
+    assert!(place.rows(subject).is_empty());
+}
+
+#[test]
+fn the_screen_holds_the_very_bytes_of_the_images_on_neutral_grey() {
+    let Some(display) = Display::open(Manager::Openbox) else {
+        return;
+    };
+    let place = Place::new();
+    for (subject, scale) in [("P1", "1"), ("P125", "1.25"), ("P175", "1.75")] {
+        check_exposure(&display, &place, subject, scale);
+    }
 }
 
 #[test]
