@@ -1,9 +1,56 @@
 //! `acuity report` and `anova`: from ratings to an analysis of variance.
 
-use analysis::Design;
+use std::path::{Path, PathBuf};
 
-use crate::command_line::AnovaArguments;
+use analysis::{Design, Pilots};
+use protocols::Study;
+
+use crate::command_line::{AnovaArguments, ReportArguments};
 use crate::console::Console;
+
+pub(crate) fn report(arguments: &ReportArguments, console: &Console) -> anyhow::Result<()> {
+    let study = Study::read(&arguments.protocol)?;
+    let data = arguments
+        .data
+        .clone()
+        .unwrap_or_else(|| study.default_data_dir());
+    let out = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| report_dir(&study, &data));
+    let pilots = if arguments.include_pilot {
+        Pilots::Included
+    } else {
+        Pilots::LeftOut
+    };
+    write_report(&study, &data, &out, pilots, console)
+}
+
+/// Writes the report and prints its warnings, its test statistics and, last, its path.
+pub(crate) fn write_report(
+    study: &Study,
+    data: &Path,
+    out: &Path,
+    pilots: Pilots,
+    console: &Console,
+) -> anyhow::Result<()> {
+    let summary = analysis::report(study, data, out, pilots)?;
+    for warning in &summary.warnings {
+        console.result(&format!("warning: {warning}"))?;
+    }
+    console.result(&summary.anova.to_text())?;
+    console.result(&summary.page.display().to_string())?;
+    Ok(())
+}
+
+/// Beside the people's report, never over it, for a data set of simulated observers.
+pub(crate) fn report_dir(study: &Study, data: &Path) -> PathBuf {
+    let people = study.default_report_dir();
+    match data.file_name() {
+        Some(name) if data.file_name() != people.file_name() => people.with_file_name(name),
+        _ => people,
+    }
+}
 
 pub(crate) fn anova(arguments: &AnovaArguments, console: &Console) -> anyhow::Result<()> {
     let design = Design {

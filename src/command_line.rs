@@ -26,12 +26,18 @@ pub(crate) enum Command {
     Render(RenderArguments),
     /// Make one image of a scene.
     Image(ImageArguments),
+    /// Draw the paper's figures from the stimulus set of a protocol.
+    Figures(FiguresArguments),
     /// Run one session in a full-screen window; it resumes where it stopped.
     Run(RunArguments),
     /// Let simulated observers sit the same session.
     Simulate(SimulateArguments),
+    /// Analyse the ratings of a study and write the report.
+    Report(ReportArguments),
     /// Analysis of variance of any table in long format.
     Anova(AnovaArguments),
+    /// The paper's study end to end: render, simulate, report. Needs no display.
+    Replicate(ReplicateArguments),
 }
 
 #[derive(Debug, Args)]
@@ -98,6 +104,18 @@ pub(crate) struct ImageArguments {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct FiguresArguments {
+    /// The protocol file.
+    pub(crate) protocol: PathBuf,
+    /// Folder of the stimulus set [default: stimuli/<set>]
+    #[arg(long)]
+    pub(crate) stimuli: Option<PathBuf>,
+    /// Folder for the figures.
+    #[arg(short, long)]
+    pub(crate) out: PathBuf,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct RunArguments {
     /// The protocol file.
     pub(crate) protocol: PathBuf,
@@ -134,6 +152,21 @@ pub(crate) struct SimulateArguments {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct ReportArguments {
+    /// The protocol file.
+    pub(crate) protocol: PathBuf,
+    /// Folder of the ratings [default: data/<study>]
+    #[arg(long)]
+    pub(crate) data: Option<PathBuf>,
+    /// Folder for the report [default: reports/<study>, or reports/<study>-simulated]
+    #[arg(long)]
+    pub(crate) out: Option<PathBuf>,
+    /// Analyse trial runs (`run --pilot`) too.
+    #[arg(long)]
+    pub(crate) include_pilot: bool,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct AnovaArguments {
     /// The table: CSV or TSV with a header line, one rating a row.
     pub(crate) table: PathBuf,
@@ -155,6 +188,19 @@ pub(crate) struct AnovaArguments {
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReplicateArguments {
+    /// How many simulated observers.
+    #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    pub(crate) subjects: u32,
+    /// Seed of the observers.
+    #[arg(long, default_value_t = 1992)]
+    pub(crate) seed: u64,
+    /// The protocol file.
+    #[arg(long, default_value = "protocols/meyer-liu-1992.toml")]
+    pub(crate) protocol: PathBuf,
 }
 
 fn size_px(text: &str) -> Result<[u32; 2], String> {

@@ -7,6 +7,7 @@ mod command_line;
 mod console;
 mod exit_code;
 mod render;
+mod replicate;
 mod sit;
 
 use std::process::ExitCode;
@@ -32,9 +33,12 @@ fn run(command: Command, console: &Console) -> anyhow::Result<ExitCode> {
         Command::Check(arguments) => return sit::check(&arguments, console),
         Command::Render(arguments) => render::set(&arguments, console)?,
         Command::Image(arguments) => render::image(&arguments, console)?,
+        Command::Figures(arguments) => render::figures(&arguments, console)?,
         Command::Run(arguments) => sit::run(&arguments, console)?,
         Command::Simulate(arguments) => sit::simulate(&arguments, console)?,
+        Command::Report(arguments) => analyse::report(&arguments, console)?,
         Command::Anova(arguments) => analyse::anova(&arguments, console)?,
+        Command::Replicate(arguments) => replicate::replicate(&arguments, console)?,
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -3,7 +3,7 @@
 use protocols::{RefinementDriver, Study, TreePlan};
 use renderer::ImageRequest;
 
-use crate::command_line::{ImageArguments, RenderArguments};
+use crate::command_line::{FiguresArguments, ImageArguments, RenderArguments};
 use crate::console::Console;
 
 pub(crate) fn set(arguments: &RenderArguments, console: &Console) -> anyhow::Result<()> {
@@ -39,5 +39,17 @@ pub(crate) fn image(arguments: &ImageArguments, console: &Console) -> anyhow::Re
     };
     let summary = renderer::render_image(&arguments.scene, &request, &arguments.out)?;
     console.result(&summary.to_string())?;
+    Ok(())
+}
+
+pub(crate) fn figures(arguments: &FiguresArguments, console: &Console) -> anyhow::Result<()> {
+    let study = Study::read(&arguments.protocol)?;
+    let stimuli = arguments
+        .stimuli
+        .clone()
+        .unwrap_or_else(|| study.default_stimuli_dir());
+    for path in renderer::draw_figures(&study, &stimuli, &arguments.out)? {
+        console.result(&path.display().to_string())?;
+    }
     Ok(())
 }
