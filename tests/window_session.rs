@@ -204,6 +204,10 @@ fn a_session_that_is_killed_goes_on_and_has_every_rating_once() {
     let mut killed = place.session(&display, "P2", "40").spawn().unwrap();
     display.wait_for("the instructions", is_page);
     place.rate_until(&display, "P2", 8);
+    display.wait_for("the scale", is_scale);
+    sleep(Duration::from_millis(100));
+    // In the middle, at 0.62 of the height (634.9), not where the last rating was clicked.
+    assert_eq!(display.mouse(), [640, 635]);
     killed.kill().unwrap();
     killed.wait().unwrap();
     assert_eq!(place.rows("P2").len(), 8);

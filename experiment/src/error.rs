@@ -53,7 +53,7 @@ pub enum ExperimentError {
     },
     /// The window could not be opened.
     #[error(
-        "no window could be opened ({reason}); a session needs an X11 display (is DISPLAY set?) with OpenGL 2 or later"
+        "no window could be opened ({reason}); a session needs an X11 display with OpenGL 2 or later"
     )]
     Window {
         /// What the window system said.

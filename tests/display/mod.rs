@@ -96,6 +96,19 @@ impl Display {
         self.xdotool(&["key", name]);
     }
 
+    /// Where the mouse is.
+    pub(crate) fn mouse(&self) -> [usize; 2] {
+        let arguments = ["getmouselocation", "--shell"];
+        let output = self.command("xdotool").args(arguments).output().unwrap();
+        let text = String::from_utf8(output.stdout).unwrap();
+        let value = |name: &str| {
+            let mut lines = text.lines();
+            let value = lines.find_map(|line| line.strip_prefix(name));
+            value.unwrap().parse().unwrap()
+        };
+        [value("X="), value("Y=")]
+    }
+
     fn xdotool(&self, arguments: &[&str]) {
         let status = self.command("xdotool").args(arguments).status().unwrap();
         assert!(status.success());

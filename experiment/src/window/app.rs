@@ -85,6 +85,10 @@ impl SessionApp {
         }
         let session = &mut self.sitting.session;
         session.on(Event::Frame, now_s);
+        if matches!(screen, Screen::Exposure(..)) && session.screen() == Screen::Rating {
+            let rest = geometry.pointer_rest();
+            context.send_viewport_cmd(ViewportCommand::CursorPosition(rest));
+        }
         if let Some(ending) = session.ending() {
             return self
                 .sitting

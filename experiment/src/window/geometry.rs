@@ -121,6 +121,12 @@ impl Geometry {
         hit.next().map(|(button, _)| button)
     }
 
+    /// Where the mouse waits for each rating, in points: below the middle of the scale, so that the last
+    /// answer is not nearer than any other.
+    pub(crate) fn pointer_rest(self) -> Pos2 {
+        ((self.size_px * vec2(0.5, 0.62)).round() / self.pixels_per_point).to_pos2()
+    }
+
     /// The bands that say PILOT.
     pub(crate) fn pilot_bands(self) -> [Rect; 2] {
         let height = (56.0 * self.unit()).round();

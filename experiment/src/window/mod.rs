@@ -66,7 +66,7 @@ pub fn run(study: &Study, options: &RunOptions) -> Result<SessionEnd, Experiment
         }),
     )
     .map_err(|error| ExperimentError::Window {
-        reason: error.to_string(),
+        reason: reason(&error),
     })?;
     let left = outcome.borrow_mut().take();
     left.unwrap_or_else(|| {
@@ -74,4 +74,15 @@ pub fn run(study: &Study, options: &RunOptions) -> Result<SessionEnd, Experiment
             reason: "it was closed by the system".to_owned(),
         })
     })
+}
+
+/// Why there is no window, in words that help; winit's own name a line of its source.
+fn reason(error: &eframe::Error) -> String {
+    match (error, std::env::var("DISPLAY")) {
+        (eframe::Error::WinitEventLoop(_), Ok(display)) if !display.is_empty() => {
+            format!("the display {display:?} does not answer")
+        }
+        (eframe::Error::WinitEventLoop(_), _) => "DISPLAY is not set".to_owned(),
+        (other, _) => other.to_string(),
+    }
 }
