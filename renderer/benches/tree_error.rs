@@ -8,15 +8,25 @@
 use std::path::Path;
 
 use protocols::{Channel, PerChannel, Quadrature, RefinementDriver};
+use rayon::prelude::*;
 use renderer::{
-    ChannelImage, Reach, RendererError, Sampler, Scene, ScreenPoint, TracePlan, reconstruct, trace,
+    Cell, ChannelImage, Reach, RendererError, Sampler, Scene, ScreenPoint, TracePlan, reconstruct,
+    trace,
 };
 
 const SIZE_PX: [u32; 2] = [320, 320];
 
 fn main() -> Result<(), RendererError> {
-    let mut arguments = std::env::args().skip(1).filter(|argument| !argument.starts_with("--"));
-    let default = || concat!(env!("CARGO_MANIFEST_DIR"), "/../stimuli/scenes/opponent-solids.toml").to_owned();
+    let mut arguments = std::env::args()
+        .skip(1)
+        .filter(|argument| !argument.starts_with("--"));
+    let default = || {
+        concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../stimuli/scenes/opponent-solids.toml"
+        )
+        .to_owned()
+    };
     let path = arguments.next().unwrap_or_else(default);
     let scene = Scene::read(Path::new(&path))?;
     let sampler = scene.sampler(Quadrature::Bands(16), SIZE_PX);
@@ -32,11 +42,16 @@ fn main() -> Result<(), RendererError> {
         let truth = uniform(&sampler, channel, [16 * SIZE_PX[0]; 2]);
         println!("{channel}: rays, rms error of the tree, of uniform sampling, ratio");
         for rays in [10_000_u32, 30_000, 50_000, 90_000, 140_000] {
-            let leaves = tree.leaves(channel, Reach::rays(rays as usize)).unwrap_or_default();
+            let leaves = tree
+                .leaves(channel, Reach::rays(rays as usize))
+                .unwrap_or_default();
             let refined = rms(&reconstruct(&leaves, SIZE_PX), &truth);
             let side = f64::from(rays).sqrt();
             let columns = count(side);
-            let even = rms(&uniform(&sampler, channel, [columns, rays / columns]), &truth);
+            let even = rms(
+                &uniform(&sampler, channel, [columns, rays / columns]),
+                &truth,
+            );
             println!("{rays:>8} {refined:.4} {even:.4} {:.2}", refined / even);
         }
     }
@@ -58,24 +73,28 @@ fn count(side: f64) -> u32 {
 
 /// One jittered sample in each cell of a grid, constant over the cell, filtered with a tent as exactly as
 /// the tree is: each cell is cut along the pixels that it meets by [`overlap`].
-fn uniform(sampler: &impl Sampler, channel: Channel, cells: [u32; 2]) -> ChannelImage {
-    let mut ray_tree = Default::default();
+fn uniform<S: Sampler>(sampler: &S, channel: Channel, cells: [u32; 2]) -> ChannelImage {
     let [columns, rows] = cells;
     let along_x = overlaps(columns, SIZE_PX[0]);
     let along_y = overlaps(rows, SIZE_PX[1]);
     let [width, height] = SIZE_PX.map(|size| size as usize);
     let (mut sums, mut weights) = (vec![0.0; width * height], vec![0.0; width * height]);
     for row in 0..rows {
-        for column in 0..columns {
-            let jitter = renderer::Cell::ROOT.random_point(u64::from(row) << 32 | u64::from(column));
+        let value = |column: u32| {
+            let seed = (u64::from(row) << 32) | u64::from(column);
+            let jitter = Cell::ROOT.random_point(seed);
             let at = ScreenPoint {
                 x: (f64::from(column) + jitter.x) / f64::from(columns),
                 y: (f64::from(row) + jitter.y) / f64::from(rows),
             };
+            let mut ray_tree = S::RayTree::default();
             sampler.intersect(at, &mut ray_tree);
-            let value = f64::from(sampler.shade(&ray_tree, channel));
-            for &(pixel_y, weight_y) in &along_y[row as usize] {
-                for &(pixel_x, weight_x) in &along_x[column as usize] {
+            f64::from(sampler.shade(&ray_tree, channel))
+        };
+        let values: Vec<f64> = (0..columns).into_par_iter().map(value).collect();
+        for &(pixel_y, weight_y) in &along_y[row as usize] {
+            for (value, places) in values.iter().zip(&along_x) {
+                for &(pixel_x, weight_x) in places {
                     sums[pixel_y * width + pixel_x] += value * weight_x * weight_y;
                     weights[pixel_y * width + pixel_x] += weight_x * weight_y;
                 }
@@ -83,7 +102,11 @@ fn uniform(sampler: &impl Sampler, channel: Channel, cells: [u32; 2]) -> Channel
         }
     }
     #[expect(clippy::cast_possible_truncation, reason = "images are of f32")]
-    let values = sums.iter().zip(&weights).map(|(sum, weight)| (sum / weight) as f32).collect();
+    let values = sums
+        .iter()
+        .zip(&weights)
+        .map(|(sum, weight)| (sum / weight) as f32)
+        .collect();
     ChannelImage::new(SIZE_PX, values).unwrap_or_else(|| unreachable!("as many values as pixels"))
 }
 
@@ -91,7 +114,11 @@ fn uniform(sampler: &impl Sampler, channel: Channel, cells: [u32; 2]) -> Channel
 fn overlaps(cells: u32, pixels: u32) -> Vec<Vec<(usize, f64)>> {
     let up_to = |t: f64| {
         let t = t.clamp(-1.0, 1.0);
-        if t < 0.0 { (1.0 + t).powi(2) / 2.0 } else { 1.0 - (1.0 - t).powi(2) / 2.0 }
+        if t < 0.0 {
+            (1.0 + t).powi(2) / 2.0
+        } else {
+            1.0 - (1.0 - t).powi(2) / 2.0
+        }
     };
     let scale = f64::from(pixels) / f64::from(cells);
     let overlap = |cell: u32| {
@@ -100,7 +127,10 @@ fn overlaps(cells: u32, pixels: u32) -> Vec<Vec<(usize, f64)>> {
             let centre = f64::from(pixel) + 0.5;
             (pixel as usize, up_to(to - centre) - up_to(from - centre))
         };
-        (0..pixels).map(part).filter(|(_, weight)| *weight > 0.0).collect()
+        (0..pixels)
+            .map(part)
+            .filter(|(_, weight)| *weight > 0.0)
+            .collect()
     };
     (0..cells).map(overlap).collect()
 }

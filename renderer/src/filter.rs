@@ -7,6 +7,9 @@
 /// How far the filter reaches from the pixel's centre, in pixels.
 pub(crate) const RADIUS_PX: f64 = 1.0;
 
+/// Over how many independent pixels the filter averages: `(∫f)² / ∫f²` along each axis is 3/2.
+pub(crate) const AREA_PX: f64 = 2.25;
+
 /// The integral of the filter from −∞ to `t` pixels from the pixel's centre.
 ///
 /// ```text

@@ -20,14 +20,15 @@ pub(super) struct GreyScale {
 }
 
 impl GreyScale {
-    /// The scale on which this image uses the whole range; A always has white at 1.
+    /// The scale on which this image uses the whole range, but no more than sRGB can have.
     pub(super) fn of(channel: Channel, image: &ChannelImage) -> Self {
-        let white = match channel.group() {
-            ChannelGroup::Achromatic => 1.0,
-            ChannelGroup::Chromatic => {
-                let largest = image.values().iter().map(|value| f64::from(value.abs()));
-                largest.fold(f64::MIN_POSITIVE, f64::max)
-            }
+        let largest = image.values().iter().map(|value| f64::from(value.abs()));
+        let largest = largest.fold(0.01, f64::max);
+        // The corners of the sRGB cube: C1 from -.398 to +.368, C2 from -.014 to +.568.
+        let white = match channel {
+            Channel::A => 1.0,
+            Channel::C1 => largest.min(0.398),
+            Channel::C2 => largest.min(0.568),
         };
         Self { channel, white }
     }
@@ -70,7 +71,7 @@ impl fmt::Display for GreyScale {
                 let Self { channel, white } = self;
                 write!(
                     formatter,
-                    "{channel}: black \u{2212}{white:.2}, mid-grey 0, white +{white:.2}"
+                    "{channel}: grey 0, black \u{2212}{white:.2}, white +{white:.2}"
                 )
             }
         }

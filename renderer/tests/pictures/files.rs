@@ -58,7 +58,7 @@ fn a_value_that_is_not_finite_is_refused() {
     assert!(refusal(&file.into_inner()).contains("the value NaN in channel A"));
 }
 
-/// The header as `exrheader` of the OpenEXR project would print it: names in order, ray counts, matrix.
+/// Read as the file format is documented: names in order, ray counts, matrix.
 #[test]
 fn the_attributes_stand_in_order_and_say_how_the_image_was_made() {
     let bytes = image_alone(&request(&small_study(), 1000, 3210), "x.exr");

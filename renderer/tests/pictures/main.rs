@@ -10,6 +10,7 @@ mod estimates;
 mod files;
 mod prefix;
 mod reconstruction;
+mod scene;
 mod set;
 mod small_study;
 mod stops;
