@@ -100,7 +100,7 @@ impl fmt::Display for SetSummary {
         }
         writeln!(
             formatter,
-            "\n{:<18}{:>10}{:>11}{:>8}{:>12}{:>9}",
+            "\n{:<18}{:>10}{:>13}{:>8}{:>12}{:>9}",
             "image alone", "shadings", "of 3 x rays", "saved", "rectangles", "clipped"
         )?;
         for stimulus in &self.stimuli {
@@ -130,7 +130,7 @@ impl fmt::Display for StimulusSummary {
         let PerChannel { a, c1, c2 } = self.rectangles;
         write!(
             formatter,
-            "{:<18}{spent:>10}{full:>11}{percent:>7.1}%{:>12}{:>9}",
+            "{:<18}{spent:>10}{full:>13}{percent:>7.1}%{:>12}{:>9}",
             self.id.as_str(),
             a + c1 + c2,
             self.out_of_gamut_px,
