@@ -95,6 +95,14 @@ impl Place {
         read_ratings(&path, &StimulusPlan::factors()).unwrap().rows
     }
 
+    /// Waits up to a second for so many rows.
+    fn wait_for_row(&self, subject: &str, count: usize) {
+        let mut waits = 0..100;
+        while self.rows(subject).len() < count && waits.next().is_some() {
+            sleep(Duration::from_millis(10));
+        }
+    }
+
     /// Clicks through the session until `count` trials are on disk; trial *n* gets the rating *n* mod 11.
     fn rate_until(&self, display: &Display, subject: &str, count: usize) {
         loop {
@@ -110,12 +118,7 @@ impl Place {
                 display.wait_for("the end of the page", |shot| !is_page(shot));
             } else {
                 display.click(rating_button((rated + 1) % 11));
-                for _ in 0..100 {
-                    if self.rows(subject).len() > rated {
-                        break;
-                    }
-                    sleep(Duration::from_millis(10));
-                }
+                self.wait_for_row(subject, rated + 1);
             }
         }
     }

@@ -1,6 +1,6 @@
 //! A screen of its own for a test: Xvfb, a window manager, a mouse, a keyboard, and screenshots.
 //!
-//! Everything goes through other programs (Xvfb, openbox, xdotool, ImageMagick), as a subject's hands and
+//! Everything goes through other programs (Xvfb, openbox, xdotool, `ImageMagick`), as a subject's hands and
 //! eyes would: nothing here knows the program under test.
 
 use std::env;
@@ -161,7 +161,7 @@ impl Screenshot {
     }
 }
 
-/// The pixels of a PNG file, by ImageMagick.
+/// The pixels of a PNG file, by `ImageMagick`.
 pub(crate) fn png_pixels(path: &Path) -> Vec<u8> {
     let mut command = Command::new("convert");
     let output = command
