@@ -33,6 +33,7 @@ impl Display {
     /// A new screen, or `None`, with the reason on stderr, where the programs for it are missing.
     ///
     /// With `ACUITY_REQUIRE_DISPLAY=1` a missing program fails the test.
+    #[expect(clippy::print_stderr, reason = "a test that is skipped says so")]
     pub(crate) fn open(manager: Manager) -> Option<Self> {
         let missing: Vec<&str> = ["Xvfb", "openbox", "xdotool", "import", "convert"]
             .into_iter()
