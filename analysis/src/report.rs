@@ -6,7 +6,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use protocols::{Observer, Study, write_atomically};
+use protocols::{Access, Observer, Study, write_atomically};
 
 use crate::anova_table::{quoted, shortest};
 use crate::figure::{Figure, Palette};
@@ -88,7 +88,7 @@ pub fn report(
     let mut files = Vec::new();
     for (name, bytes) in contents {
         let file = out_dir.join(name);
-        if let Err(source) = write_atomically(&file, &bytes) {
+        if let Err(source) = write_atomically(&file, &bytes, Access::Owner) {
             return Err(AnalysisError::Write { file, source });
         }
         files.push(file);

@@ -8,7 +8,9 @@ use std::os::unix::fs::DirBuilderExt as _;
 use std::path::Path;
 
 use protocols::rating::columns;
-use protocols::{DataSet, InputError, Observer, ReadError, StimulusPlan, Study, write_atomically};
+use protocols::{
+    Access, DataSet, InputError, Observer, ReadError, StimulusPlan, Study, write_atomically,
+};
 use serde_json::{Value, json};
 
 use crate::ExperimentError;
@@ -36,7 +38,8 @@ pub(crate) fn prepare(
         .into());
     }
     let text = format!("{:#}\n", description(study, observer));
-    write_atomically(&path, text.as_bytes()).map_err(ExperimentError::io("write", &path))
+    write_atomically(&path, text.as_bytes(), Access::Owner)
+        .map_err(ExperimentError::io("write", &path))
 }
 
 /// Checks that the data set is of this study and of this kind of observer.

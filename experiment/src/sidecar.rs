@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 
 use protocols::{
-    InputError, Observer, ReadError, Sha256Digest, Study, SubjectId, write_atomically,
+    Access, InputError, Observer, ReadError, Sha256Digest, Study, SubjectId, write_atomically,
 };
 use serde::{Deserialize, Serialize};
 
@@ -181,6 +181,7 @@ impl Sidecar {
             Err(error) => return Err(to_error(error.into())),
         };
         text.push('\n');
-        write_atomically(path, text.as_bytes()).map_err(ExperimentError::io("write", path))
+        write_atomically(path, text.as_bytes(), Access::Owner)
+            .map_err(ExperimentError::io("write", path))
     }
 }

@@ -13,7 +13,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use jiff::Timestamp;
 use protocols::rating::header_line;
 use protocols::{
-    DataSet, InputError, Observer, StimulusId, StimulusPlan, Study, SubjectId, write_atomically,
+    Access, DataSet, InputError, Observer, StimulusId, StimulusPlan, Study, SubjectId,
+    write_atomically,
 };
 use rayon::prelude::*;
 
@@ -154,7 +155,8 @@ impl Simulation<'_> {
         let path = self
             .data_set
             .ratings_path(&subject, key.session_id, key.task());
-        write_atomically(&path, text.as_bytes()).map_err(ExperimentError::io("write", &path))?;
+        write_atomically(&path, text.as_bytes(), Access::Owner)
+            .map_err(ExperimentError::io("write", &path))?;
 
         let mut sidecar = Sidecar::new(self.study, self.set.manifest_sha256(), &key);
         sidecar.model = Some(traits);

@@ -1,39 +1,44 @@
 //! Writing a file whole or not at all: a temporary file beside it, fsync, rename.
 
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Write as _};
+use std::fs::{self, File, Permissions};
+use std::io::{self, Write as _};
+use std::os::unix::fs::PermissionsExt as _;
 use std::path::Path;
+
+/// Who may read a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    /// Only the user who runs the program: all that was made from people's answers.
+    Owner,
+    /// Whom the user's umask allows: pictures and figures.
+    Ordinary,
+}
+
+impl Access {
+    const fn mode(self) -> u32 {
+        match self {
+            Self::Owner => 0o600,
+            Self::Ordinary => 0o666,
+        }
+    }
+}
 
 /// Writes `bytes` to `path`; a reader sees the old file or the whole new one, even after a power cut.
 ///
 /// # Errors
 ///
 /// Any error of creating, writing, syncing or renaming; the old file then stands untouched.
-pub fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    write_atomically_with(path, |file| file.write_all(bytes))
-}
-
-/// As [`write_atomically`], with the bytes written by `fill`.
-///
-/// # Errors
-///
-/// As [`write_atomically`], and any error of `fill`.
-pub fn write_atomically_with(
-    path: &Path,
-    fill: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
-) -> io::Result<()> {
+pub fn write_atomically(path: &Path, bytes: &[u8], access: Access) -> io::Result<()> {
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     };
     fs::create_dir_all(folder)?;
-    let temporary = tempfile::Builder::new()
+    let mut temporary = tempfile::Builder::new()
         .prefix(".writing-")
+        .permissions(Permissions::from_mode(access.mode()))
         .tempfile_in(folder)?;
-    let mut writer = BufWriter::new(temporary.as_file());
-    fill(&mut writer)?;
-    writer.flush()?;
-    drop(writer);
+    temporary.write_all(bytes)?;
     temporary.as_file().sync_all()?;
     temporary.persist(path).map_err(|error| error.error)?;
     File::open(folder)?.sync_all()
@@ -44,16 +49,28 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_failure_half_way_leaves_the_old_file_and_no_other() {
+    fn a_failure_leaves_what_stood_there_and_no_other_file() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("kept.txt");
-        write_atomically(&path, b"old").unwrap();
-        let failed = write_atomically_with(&path, |file| {
-            file.write_all(b"half")?;
-            Err(io::Error::other("the disk is full"))
-        });
-        assert!(failed.is_err());
-        assert_eq!(fs::read(&path).unwrap(), b"old");
+        // A folder cannot be replaced by a file, so the rename fails.
+        let path = folder.path().join("kept");
+        fs::create_dir(&path).unwrap();
+        fs::write(path.join("inside"), "old").unwrap();
+        assert!(write_atomically(&path, b"new", Access::Owner).is_err());
+        assert_eq!(fs::read(path.join("inside")).unwrap(), b"old");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn what_people_answered_is_for_the_owner_only() {
+        let folder = tempfile::tempdir().unwrap();
+        let mode = |access| {
+            let path = folder.path().join("file");
+            write_atomically(&path, b"7", access).unwrap();
+            fs::metadata(path).unwrap().permissions().mode() & 0o777
+        };
+        assert_eq!(mode(Access::Owner), 0o600);
+        // Whatever the umask is, the owner may read and write, and nobody may execute.
+        let ordinary = mode(Access::Ordinary);
+        assert_eq!(ordinary & 0o711, 0o600, "{ordinary:o}");
     }
 }

@@ -29,7 +29,7 @@ mod subject_id;
 mod viewing;
 
 pub use analysis_plan::{AnalysisPlan, Correction, Exclusion, PublishedEffect};
-pub use atomic_file::{write_atomically, write_atomically_with};
+pub use atomic_file::{Access, write_atomically};
 pub use channel::{Channel, ChannelGroup, PerChannel};
 pub use data_set::{DataSet, Observer};
 pub use input_error::{InputError, ReadError};

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use protocols::{Channel, InputError, PerChannel, Sha256Digest, write_atomically};
+use protocols::{Access, Channel, InputError, PerChannel, Sha256Digest, write_atomically};
 use rayon::prelude::*;
 
 use crate::account::RayAccount;
@@ -99,7 +99,8 @@ pub fn render_image_of(
         Format::Exr => opponent_exr::encode(channels, &request.record(scene_sha256), out)?,
         Format::Png => picture.to_png(out)?,
     };
-    write_atomically(out, &bytes).map_err(|error| RendererError::writing(out, error))?;
+    write_atomically(out, &bytes, Access::Ordinary)
+        .map_err(|error| RendererError::writing(out, error))?;
     Ok(ImageSummary {
         path: out.to_owned(),
         sha256: Sha256Digest::of(&bytes),

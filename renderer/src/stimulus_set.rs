@@ -11,8 +11,8 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use protocols::{
-    Channel, Manifest, ManifestFile, ManifestStimulus, PerChannel, RayCount, RefinementDriver,
-    Sha256Digest, Stimulus, StimulusPlan, Study, write_atomically,
+    Access, Channel, Manifest, ManifestFile, ManifestStimulus, PerChannel, RayCount,
+    RefinementDriver, Sha256Digest, Stimulus, StimulusPlan, Study, write_atomically,
 };
 use rayon::prelude::*;
 
@@ -154,7 +154,8 @@ fn write_stimulus(
     let write = |ending: &str, bytes: &[u8]| {
         let name = format!("{}.{ending}", stimulus.id);
         let path = out.join(&name);
-        write_atomically(&path, bytes).map_err(|error| RendererError::writing(&path, error))?;
+        write_atomically(&path, bytes, Access::Ordinary)
+            .map_err(|error| RendererError::writing(&path, error))?;
         Ok::<_, RendererError>(ManifestFile {
             name,
             sha256: Sha256Digest::of(bytes),
@@ -205,7 +206,8 @@ fn write_manifest(manifest: &Manifest, out: &Path) -> Result<(), RendererError> 
             reason: error.to_string(),
         })?;
     text.push('\n');
-    write_atomically(&path, text.as_bytes()).map_err(|error| RendererError::writing(&path, error))
+    write_atomically(&path, text.as_bytes(), Access::Ordinary)
+        .map_err(|error| RendererError::writing(&path, error))
 }
 
 /// An older set is no set while its files are replaced.

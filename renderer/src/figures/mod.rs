@@ -14,7 +14,7 @@ mod verified_set;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use protocols::{Channel, ChannelGroup, PerChannel, RayCount, Study, write_atomically};
+use protocols::{Access, Channel, ChannelGroup, PerChannel, RayCount, Study, write_atomically};
 
 use crate::error::RendererError;
 use channel_grey::GreyScale;
@@ -41,7 +41,7 @@ pub fn draw_figures(
     let mut files = Vec::new();
     let mut keep = |name: &str, bytes: &[u8]| {
         let path = out.join(name);
-        write_atomically(&path, bytes).map_err(|error| RendererError::writing(&path, error))?;
+        write_atomically(&path, bytes, Access::Ordinary).map_err(|error| RendererError::writing(&path, error))?;
         files.push(path);
         Ok::<_, RendererError>(())
     };
