@@ -6,14 +6,11 @@ use analysis::{Design, Pilots};
 use protocols::Study;
 
 use crate::command_line::{AnovaArguments, ReportArguments};
-use crate::console::Console;
+use crate::console;
 
-pub(crate) fn report(arguments: &ReportArguments, console: &Console) -> anyhow::Result<()> {
+pub(crate) fn report(arguments: &ReportArguments) -> anyhow::Result<()> {
     let study = Study::read(&arguments.protocol)?;
-    let data = arguments
-        .data
-        .clone()
-        .unwrap_or_else(|| study.default_data_dir());
+    let data = arguments.data.of(&study);
     let out = arguments
         .out
         .clone()
@@ -23,7 +20,7 @@ pub(crate) fn report(arguments: &ReportArguments, console: &Console) -> anyhow::
     } else {
         Pilots::LeftOut
     };
-    write_report(&study, &data, &out, pilots, console)
+    write_report(&study, &data, &out, pilots)
 }
 
 /// Writes the report and prints its warnings, its test statistics and, last, its path.
@@ -32,14 +29,13 @@ pub(crate) fn write_report(
     data: &Path,
     out: &Path,
     pilots: Pilots,
-    console: &Console,
 ) -> anyhow::Result<()> {
     let summary = analysis::report(study, data, out, pilots)?;
     for warning in &summary.warnings {
-        console.result(&format!("warning: {warning}"))?;
+        console::print(format!("warning: {warning}"))?;
     }
-    console.result(&summary.anova.to_text())?;
-    console.result(&summary.page.display().to_string())?;
+    console::print(summary.anova.to_text())?;
+    console::print(summary.page.display())?;
     Ok(())
 }
 
@@ -52,7 +48,7 @@ pub(crate) fn report_dir(study: &Study, data: &Path) -> PathBuf {
     }
 }
 
-pub(crate) fn anova(arguments: &AnovaArguments, console: &Console) -> anyhow::Result<()> {
+pub(crate) fn anova(arguments: &AnovaArguments) -> anyhow::Result<()> {
     let design = Design {
         subject: arguments.subject.clone(),
         rating: arguments.rating.clone(),
@@ -61,7 +57,7 @@ pub(crate) fn anova(arguments: &AnovaArguments, console: &Console) -> anyhow::Re
         observed: arguments.observed.clone(),
     };
     let table = analysis::anova_of_table(&arguments.table, &design)?;
-    console.result(&if arguments.json {
+    console::print(if arguments.json {
         table.to_json()
     } else {
         table.to_text()

@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use protocols::{Quadrature, RayCount, SubjectId};
+use protocols::{Quadrature, RayCount, Study, SubjectId};
 
 /// A psychophysics experiment harness: scene, rays, tree, channel images, stimuli, session, ratings, ANOVA,
 /// report.
@@ -41,15 +41,43 @@ pub(crate) enum Command {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct StimuliFolder {
+    /// Folder of the stimulus set [default: stimuli/<set>]
+    #[arg(long = "stimuli", value_name = "DIR")]
+    named: Option<PathBuf>,
+}
+
+impl StimuliFolder {
+    /// The folder named, or the study's own.
+    pub(crate) fn of(&self, study: &Study) -> PathBuf {
+        let named = self.named.clone();
+        named.unwrap_or_else(|| study.default_stimuli_dir())
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct DataFolder {
+    /// Folder of the ratings [default: data/<study>]
+    #[arg(long = "data", value_name = "DIR")]
+    named: Option<PathBuf>,
+}
+
+impl DataFolder {
+    /// The folder named, or the study's own.
+    pub(crate) fn of(&self, study: &Study) -> PathBuf {
+        let named = self.named.clone();
+        named.unwrap_or_else(|| study.default_data_dir())
+    }
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct CheckArguments {
     /// The protocol file.
     pub(crate) protocol: PathBuf,
-    /// Folder of the stimulus set [default: stimuli/<set>]
-    #[arg(long)]
-    pub(crate) stimuli: Option<PathBuf>,
-    /// Folder of the ratings [default: data/<study>]
-    #[arg(long)]
-    pub(crate) data: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) stimuli: StimuliFolder,
+    #[command(flatten)]
+    pub(crate) data: DataFolder,
 }
 
 #[derive(Debug, Args)]
@@ -107,9 +135,8 @@ pub(crate) struct ImageArguments {
 pub(crate) struct FiguresArguments {
     /// The protocol file.
     pub(crate) protocol: PathBuf,
-    /// Folder of the stimulus set [default: stimuli/<set>]
-    #[arg(long)]
-    pub(crate) stimuli: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) stimuli: StimuliFolder,
     /// Folder for the figures.
     #[arg(short, long)]
     pub(crate) out: PathBuf,
@@ -122,12 +149,10 @@ pub(crate) struct RunArguments {
     /// Code of the subject: 1 to 32 letters and digits, never a name.
     #[arg(long)]
     pub(crate) subject: SubjectId,
-    /// Folder of the stimulus set [default: stimuli/<set>]
-    #[arg(long)]
-    pub(crate) stimuli: Option<PathBuf>,
-    /// Folder of the ratings [default: data/<study>]
-    #[arg(long)]
-    pub(crate) data: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) stimuli: StimuliFolder,
+    #[command(flatten)]
+    pub(crate) data: DataFolder,
     /// Try the session out, this many times faster; marked PILOT on the screen and in the data.
     #[arg(long, value_name = "SPEED", value_parser = pilot_speed)]
     pub(crate) pilot: Option<f64>,
@@ -143,9 +168,8 @@ pub(crate) struct SimulateArguments {
     /// Seed of the observers.
     #[arg(long)]
     pub(crate) seed: u64,
-    /// Folder of the stimulus set [default: stimuli/<set>]
-    #[arg(long)]
-    pub(crate) stimuli: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) stimuli: StimuliFolder,
     /// Folder of the simulated ratings [default: data/<study>-simulated]
     #[arg(long)]
     pub(crate) data: Option<PathBuf>,
@@ -155,9 +179,8 @@ pub(crate) struct SimulateArguments {
 pub(crate) struct ReportArguments {
     /// The protocol file.
     pub(crate) protocol: PathBuf,
-    /// Folder of the ratings [default: data/<study>]
-    #[arg(long)]
-    pub(crate) data: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) data: DataFolder,
     /// Folder for the report [default: reports/<study>, or reports/<study>-simulated]
     #[arg(long)]
     pub(crate) out: Option<PathBuf>,

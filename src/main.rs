@@ -14,31 +14,35 @@ use std::process::ExitCode;
 
 use clap::Parser as _;
 use command_line::{Command, CommandLine};
-use console::Console;
+use console::Progress;
 
 fn main() -> ExitCode {
     let arguments = CommandLine::parse();
-    let console = Console::new(arguments.quiet);
-    match run(arguments.command, &console) {
+    let progress = if arguments.quiet {
+        Progress::Silent
+    } else {
+        Progress::Drawn
+    };
+    match run(arguments.command, progress) {
         Ok(code) => code,
         Err(error) => {
-            console.error(&error);
+            console::print_error(&error);
             exit_code::of(&error)
         }
     }
 }
 
-fn run(command: Command, console: &Console) -> anyhow::Result<ExitCode> {
+fn run(command: Command, progress: Progress) -> anyhow::Result<ExitCode> {
     match command {
-        Command::Check(arguments) => return sit::check(&arguments, console),
-        Command::Render(arguments) => render::set(&arguments, console)?,
-        Command::Image(arguments) => render::image(&arguments, console)?,
-        Command::Figures(arguments) => render::figures(&arguments, console)?,
-        Command::Run(arguments) => sit::run(&arguments, console)?,
-        Command::Simulate(arguments) => sit::simulate(&arguments, console)?,
-        Command::Report(arguments) => analyse::report(&arguments, console)?,
-        Command::Anova(arguments) => analyse::anova(&arguments, console)?,
-        Command::Replicate(arguments) => replicate::replicate(&arguments, console)?,
+        Command::Check(arguments) => return sit::check(&arguments),
+        Command::Render(arguments) => render::set(&arguments, progress)?,
+        Command::Image(arguments) => render::image(&arguments)?,
+        Command::Figures(arguments) => render::figures(&arguments)?,
+        Command::Run(arguments) => sit::run(&arguments)?,
+        Command::Simulate(arguments) => sit::simulate(&arguments, progress)?,
+        Command::Report(arguments) => analyse::report(&arguments)?,
+        Command::Anova(arguments) => analyse::anova(&arguments)?,
+        Command::Replicate(arguments) => replicate::replicate(&arguments, progress)?,
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -4,22 +4,22 @@ use protocols::{RefinementDriver, Study, TreePlan};
 use renderer::ImageRequest;
 
 use crate::command_line::{FiguresArguments, ImageArguments, RenderArguments};
-use crate::console::Console;
+use crate::console::{self, Progress};
 
-pub(crate) fn set(arguments: &RenderArguments, console: &Console) -> anyhow::Result<()> {
+pub(crate) fn set(arguments: &RenderArguments, progress: Progress) -> anyhow::Result<()> {
     let study = Study::read(&arguments.protocol)?;
     let out = arguments
         .out
         .clone()
         .unwrap_or_else(|| study.default_stimuli_dir());
-    let summary = console.with_progress("render", |progress| {
-        renderer::render_set(&study, &out, arguments.threads, progress)
+    let summary = progress.of("render", |told| {
+        renderer::render_set(&study, &out, arguments.threads, told)
     })?;
-    console.result(&summary.to_string())?;
+    console::print(summary)?;
     Ok(())
 }
 
-pub(crate) fn image(arguments: &ImageArguments, console: &Console) -> anyhow::Result<()> {
+pub(crate) fn image(arguments: &ImageArguments) -> anyhow::Result<()> {
     let request = ImageRequest {
         rays_a: arguments.rays_a,
         rays_c1c2: arguments.rays_c1c2,
@@ -38,18 +38,15 @@ pub(crate) fn image(arguments: &ImageArguments, console: &Console) -> anyhow::Re
         threads: arguments.threads,
     };
     let summary = renderer::render_image(&arguments.scene, &request, &arguments.out)?;
-    console.result(&summary.to_string())?;
+    console::print(summary)?;
     Ok(())
 }
 
-pub(crate) fn figures(arguments: &FiguresArguments, console: &Console) -> anyhow::Result<()> {
+pub(crate) fn figures(arguments: &FiguresArguments) -> anyhow::Result<()> {
     let study = Study::read(&arguments.protocol)?;
-    let stimuli = arguments
-        .stimuli
-        .clone()
-        .unwrap_or_else(|| study.default_stimuli_dir());
+    let stimuli = arguments.stimuli.of(&study);
     for path in renderer::draw_figures(&study, &stimuli, &arguments.out)? {
-        console.result(&path.display().to_string())?;
+        console::print(path.display())?;
     }
     Ok(())
 }

@@ -6,68 +6,53 @@ use experiment::RunOptions;
 use protocols::Study;
 
 use crate::command_line::{CheckArguments, RunArguments, SimulateArguments};
-use crate::console::Console;
+use crate::console::{self, Progress};
 
-pub(crate) fn check(arguments: &CheckArguments, console: &Console) -> anyhow::Result<ExitCode> {
+pub(crate) fn check(arguments: &CheckArguments) -> anyhow::Result<ExitCode> {
     let study = Study::read(&arguments.protocol)?;
-    let stimuli = arguments
-        .stimuli
-        .clone()
-        .unwrap_or_else(|| study.default_stimuli_dir());
-    let data = arguments
-        .data
-        .clone()
-        .unwrap_or_else(|| study.default_data_dir());
+    let stimuli = arguments.stimuli.of(&study);
+    let data = arguments.data.of(&study);
     let missing = experiment::check_ready(&study, &stimuli, &data);
     if missing.is_empty() {
-        console.result("ready")?;
+        console::print("ready")?;
         return Ok(ExitCode::SUCCESS);
     }
     for line in &missing {
-        console.result(&format!("not ready: {line}"))?;
+        console::print(format!("not ready: {line}"))?;
     }
     Ok(ExitCode::from(2))
 }
 
-pub(crate) fn run(arguments: &RunArguments, console: &Console) -> anyhow::Result<()> {
+pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<()> {
     let study = Study::read(&arguments.protocol)?;
     let options = RunOptions {
         subject: arguments.subject.clone(),
-        stimuli_dir: arguments
-            .stimuli
-            .clone()
-            .unwrap_or_else(|| study.default_stimuli_dir()),
-        data_dir: arguments
-            .data
-            .clone()
-            .unwrap_or_else(|| study.default_data_dir()),
+        stimuli_dir: arguments.stimuli.of(&study),
+        data_dir: arguments.data.of(&study),
         pilot: arguments.pilot,
     };
     let end = experiment::run(&study, &options)?;
-    console.result(&end.to_string())?;
+    console::print(end)?;
     Ok(())
 }
 
-pub(crate) fn simulate(arguments: &SimulateArguments, console: &Console) -> anyhow::Result<()> {
+pub(crate) fn simulate(arguments: &SimulateArguments, progress: Progress) -> anyhow::Result<()> {
     let study = Study::read(&arguments.protocol)?;
-    let stimuli = arguments
-        .stimuli
-        .clone()
-        .unwrap_or_else(|| study.default_stimuli_dir());
+    let stimuli = arguments.stimuli.of(&study);
     let data = arguments
         .data
         .clone()
         .unwrap_or_else(|| study.default_simulated_data_dir());
-    let summary = console.with_progress("simulate", |progress| {
+    let summary = progress.of("simulate", |told| {
         experiment::simulate(
             &study,
             &stimuli,
             &data,
             arguments.subjects,
             arguments.seed,
-            progress,
+            told,
         )
     })?;
-    console.result(&summary.to_string())?;
+    console::print(summary)?;
     Ok(())
 }

@@ -1,84 +1,36 @@
 //! The command line from outside: exit codes, one clear error, nothing half-written.
 
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
-
 mod acuity;
 
 use std::fs;
+use std::path::Path;
+use std::process::Output;
 
 use acuity::{PROTOCOL, acuity, stderr, text_of};
+
+/// Commands (P is the paper's protocol) that are wrong, and what the message must name.
+const WRONG_COMMANDS: [(&str, &str); 9] = [
+    ("paint", "paint"),
+    ("render", "PROTOCOL"),
+    ("run P --subject Jane_Doe", "letters"),
+    ("run P --subject ../01", "letters"),
+    ("run P --subject 01 --pilot 0", "from 1 to 1000"),
+    ("simulate P --subjects 0 --seed 1", "0"),
+    ("image s.toml --rays-a many --rays-c1c2 1K -o x.exr", "many"),
+    (
+        "image s.toml --rays-a 1K --rays-c1c2 1K --size 0x1 -o x.exr",
+        "0x1",
+    ),
+    ("image s.toml --rays-a 1K --rays-c1c2 1K -o x.exr", "s.toml"),
+];
 
 #[test]
 fn a_wrong_command_ends_with_exit_code_2_and_says_what_was_expected() {
     let folder = tempfile::tempdir().unwrap();
-    let cases: [(&[&str], &str); 9] = [
-        (&["paint"], "paint"),
-        (&["render"], "PROTOCOL"),
-        (&["run", PROTOCOL, "--subject", "Jane Doe"], "letters"),
-        (&["run", PROTOCOL, "--subject", "../01"], "letters"),
-        (
-            &["run", PROTOCOL, "--subject", "01", "--pilot", "0"],
-            "from 1 to 1000",
-        ),
-        (
-            &["simulate", PROTOCOL, "--subjects", "0", "--seed", "1"],
-            "0",
-        ),
-        (
-            &[
-                "image",
-                "scene.toml",
-                "--rays-a",
-                "many",
-                "--rays-c1c2",
-                "1K",
-                "-o",
-                "x.exr",
-            ],
-            "many",
-        ),
-        (
-            &[
-                "image",
-                "scene.toml",
-                "--rays-a",
-                "1K",
-                "--rays-c1c2",
-                "1K",
-                "--size",
-                "0x1",
-                "-o",
-                "x.exr",
-            ],
-            "0x1",
-        ),
-        (
-            &[
-                "image",
-                "scene.toml",
-                "--rays-a",
-                "1K",
-                "--rays-c1c2",
-                "1K",
-                "-o",
-                "x.exr",
-            ],
-            "scene.toml",
-        ),
-    ];
-    for (arguments, named) in cases {
-        let output = acuity(folder.path(), arguments);
-        assert_eq!(
-            output.status.code(),
-            Some(2),
-            "{arguments:?}: {}",
-            stderr(&output)
-        );
-        assert!(
-            stderr(&output).contains(named),
-            "{arguments:?}: {}",
-            stderr(&output)
-        );
+    for (command, named) in WRONG_COMMANDS {
+        let words = command.split(' ');
+        let words = words.map(|word| if word == "P" { PROTOCOL } else { word });
+        refused(folder.path(), &words.collect::<Vec<_>>(), named);
     }
     assert_eq!(
         fs::read_dir(folder.path()).unwrap().count(),
@@ -87,16 +39,22 @@ fn a_wrong_command_ends_with_exit_code_2_and_says_what_was_expected() {
     );
 }
 
+/// Runs a command that must end with exit code 2 and name `named` on stderr.
+fn refused(folder: &Path, arguments: &[&str], named: &str) -> Output {
+    let output = acuity(folder, arguments);
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+    assert!(message.contains(named), "{arguments:?}: {message}");
+    output
+}
+
 #[test]
 fn every_command_refuses_a_protocol_that_is_none_and_names_the_file() {
     let folder = tempfile::tempdir().unwrap();
-    fs::write(
-        folder.path().join("bad.toml"),
-        "study = \"x\"\nexposure_sec = 10.0\n",
-    )
-    .unwrap();
+    let text = "study = \"x\"\nexposure_sec = 10.0\n";
+    fs::write(folder.path().join("bad.toml"), text).unwrap();
     for file in ["missing.toml", "bad.toml"] {
-        let cases: [&[&str]; 7] = [
+        let commands: [&[&str]; 7] = [
             &["check", file],
             &["render", file],
             &["figures", file, "-o", "figures"],
@@ -105,19 +63,8 @@ fn every_command_refuses_a_protocol_that_is_none_and_names_the_file() {
             &["report", file],
             &["replicate", "--protocol", file],
         ];
-        for arguments in cases {
-            let output = acuity(folder.path(), arguments);
-            assert_eq!(
-                output.status.code(),
-                Some(2),
-                "{arguments:?}: {}",
-                stderr(&output)
-            );
-            assert!(
-                stderr(&output).contains(file),
-                "{arguments:?}: {}",
-                stderr(&output)
-            );
+        for arguments in commands {
+            refused(folder.path(), arguments, file);
         }
     }
     assert_eq!(
@@ -127,48 +74,27 @@ fn every_command_refuses_a_protocol_that_is_none_and_names_the_file() {
     );
 }
 
+/// Tables that cannot be analysed, and what the message must name.
+const BAD_TABLES: [(&str, &str); 5] = [
+    ("subject,rating\ns1,1\ns2,2\n", "channel"),
+    ("subject,channel,rating\ns1,a,1\ns1,b,two\n", "two"),
+    ("subject,channel,rating\ns1,a,1\ns1,b,2\n", "subject"),
+    ("subject,channel,rating\ns1,a,1\ns2,a,2\n", "level"),
+    ("", "table.csv"),
+];
+
 #[test]
 fn a_table_that_cannot_be_analysed_is_refused_and_named() {
     let folder = tempfile::tempdir().unwrap();
-    let cases = [
-        ("missing column", "subject,rating\ns1,1\ns2,2\n", "channel"),
-        (
-            "no number",
-            "subject,channel,rating\ns1,a,1\ns1,b,two\n",
-            "two",
-        ),
-        (
-            "one subject",
-            "subject,channel,rating\ns1,a,1\ns1,b,2\n",
-            "subject",
-        ),
-        (
-            "one level",
-            "subject,channel,rating\ns1,a,1\ns2,a,2\n",
-            "level",
-        ),
-        ("empty", "", "table.csv"),
-    ];
-    for (name, table, named) in cases {
+    let command = "anova table.csv --subject subject --rating rating --within channel";
+    for (table, named) in BAD_TABLES {
         fs::write(folder.path().join("table.csv"), table).unwrap();
-        let arguments = [
-            "anova",
-            "table.csv",
-            "--subject",
-            "subject",
-            "--rating",
-            "rating",
-            "--within",
-            "channel",
-        ];
-        let output = acuity(folder.path(), &arguments);
-        assert_eq!(output.status.code(), Some(2), "{name}: {}", stderr(&output));
-        assert!(
-            stderr(&output).contains(named),
-            "{name}: {}",
-            stderr(&output)
+        let output = refused(
+            folder.path(),
+            &command.split(' ').collect::<Vec<_>>(),
+            named,
         );
-        assert_eq!(text_of(&output.stdout), "", "{name}");
+        assert_eq!(text_of(&output.stdout), "", "{table:?}");
     }
 }
 
@@ -179,13 +105,7 @@ fn a_session_does_not_start_without_the_stimulus_set() {
         &["run", PROTOCOL, "--subject", "01"][..],
         &["simulate", PROTOCOL, "--subjects", "2", "--seed", "1"],
     ] {
-        let output = acuity(folder.path(), command);
-        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
-        assert!(
-            stderr(&output).contains("acuity render"),
-            "{}",
-            stderr(&output)
-        );
+        refused(folder.path(), command, "acuity render");
     }
     let checked = acuity(folder.path(), &["check", PROTOCOL]);
     assert_eq!(checked.status.code(), Some(2), "{}", stderr(&checked));

@@ -9,10 +9,16 @@ const CRATES: [&str; 4] = ["protocols", "renderer", "experiment", "analysis"];
 
 /// The crates of this workspace that the manifest in `folder` names, in any table of dependencies.
 fn neighbours(folder: &str) -> Vec<&'static str> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder).join("Cargo.toml");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join(folder)
+        .join("Cargo.toml");
     let manifest: toml::Table = std::fs::read_to_string(path).unwrap().parse().unwrap();
     let tables = ["dependencies", "dev-dependencies", "build-dependencies"];
-    let names = |name: &&str| tables.iter().any(|table| manifest.get(*table).is_some_and(|t| t.get(*name).is_some()));
+    let names = |name: &&str| {
+        tables
+            .iter()
+            .any(|table| manifest.get(*table).is_some_and(|t| t.get(*name).is_some()))
+    };
     CRATES.into_iter().filter(names).collect()
 }
 

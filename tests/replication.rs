@@ -147,7 +147,5 @@ fn mean_rating(means: &str, channel: &str, rays: &str) -> f64 {
         .map(|line| line.split(',').collect::<Vec<_>>());
     let mut of_levels =
         rows.filter(|row| row[column("channel")] == channel && row[column("rays")] == rays);
-    of_levels.next().unwrap()[column("mean")]
-        .parse()
-        .unwrap()
+    of_levels.next().unwrap()[column("mean")].parse().unwrap()
 }

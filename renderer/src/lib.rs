@@ -58,7 +58,7 @@ pub use sampler::{Sampler, ScreenPoint};
 pub use scene::Scene;
 pub use scene_sampler::SceneSampler;
 pub use screen_tree::{Leaf, Reach, ScreenTree};
-pub use srgb::{is_out_of_srgb_gamut, srgb_encode};
 pub use set_summary::{SetSummary, StimulusSummary};
+pub use srgb::{is_out_of_srgb_gamut, srgb_encode};
 pub use srgb_png::{SrgbEncoder, SrgbImage};
 pub use stimulus_set::render_set_of;

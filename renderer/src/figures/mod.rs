@@ -41,7 +41,8 @@ pub fn draw_figures(
     let mut files = Vec::new();
     let mut keep = |name: &str, bytes: &[u8]| {
         let path = out.join(name);
-        write_atomically(&path, bytes, Access::Ordinary).map_err(|error| RendererError::writing(&path, error))?;
+        write_atomically(&path, bytes, Access::Ordinary)
+            .map_err(|error| RendererError::writing(&path, error))?;
         files.push(path);
         Ok::<_, RendererError>(())
     };
