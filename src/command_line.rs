@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use protocols::{Quadrature, RayCount, Study, SubjectId};
+use protocols::{Quadrature, RayCount, RefinementDriver, Study, SubjectId};
 
 /// A psychophysics experiment harness: scene, rays, tree, channel images, stimuli, session, ratings, ANOVA,
 /// report.
@@ -114,6 +114,9 @@ pub(crate) struct ImageArguments {
     /// Down to this depth of the tree every cell is split.
     #[arg(long, default_value_t = 8)]
     pub(crate) min_depth: u32,
+    /// Which channels say where more samples are needed: A, or AC1C2 (a channel that stops then changes the tree).
+    #[arg(long, default_value = "A", value_parser = driver)]
+    pub(crate) driver: RefinementDriver,
     /// Neither shade nor store A below this depth of the tree (p of section 3.3).
     #[arg(long)]
     pub(crate) depth_a: Option<u32>,
@@ -237,6 +240,14 @@ fn size_px(text: &str) -> Result<[u32; 2], String> {
 
 fn quadrature(text: &str) -> Result<Quadrature, String> {
     text.to_owned().try_into()
+}
+
+fn driver(text: &str) -> Result<RefinementDriver, String> {
+    match text {
+        "A" => Ok(RefinementDriver::A),
+        "AC1C2" => Ok(RefinementDriver::All),
+        _ => Err(format!("found the driver {text:?}, expected A or AC1C2")),
+    }
 }
 
 fn pilot_speed(text: &str) -> Result<f64, String> {

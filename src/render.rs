@@ -1,6 +1,6 @@
 //! `acuity render`, `image` and `figures`: from a protocol or a scene to pictures.
 
-use protocols::{RefinementDriver, Study, TreePlan};
+use protocols::{Study, TreePlan};
 use renderer::ImageRequest;
 
 use crate::command_line::{FiguresArguments, ImageArguments, RenderArguments};
@@ -33,7 +33,7 @@ pub(crate) fn image(arguments: &ImageArguments) -> anyhow::Result<()> {
         quadrature: arguments.quadrature,
         tree: TreePlan {
             min_depth: arguments.min_depth,
-            driver: RefinementDriver::A,
+            driver: arguments.driver,
         },
         threads: arguments.threads,
     };

@@ -111,3 +111,26 @@ fn a_session_does_not_start_without_the_stimulus_set() {
     assert_eq!(checked.status.code(), Some(2), "{}", stderr(&checked));
     assert!(text_of(&checked.stdout).contains("manifest.json"));
 }
+
+#[test]
+fn the_program_says_that_a_stopped_channel_changes_a_tree_that_all_channels_drive() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/stimuli/scenes/opponent-solids.toml"
+    );
+    let command = ["--rays-a", "2K", "--rays-c1c2", "1K", "--size", "32x32"];
+    for (driver, is_remarked) in [("A", false), ("AC1C2", true)] {
+        let mut arguments = vec!["image", scene, "--driver", driver, "-o", "x.exr"];
+        arguments.extend(command);
+        let output = acuity(folder.path(), &arguments);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let printed = text_of(&output.stdout);
+        assert!(printed.contains("shadings A 2000, C1 1000, C2 1000"));
+        assert_eq!(
+            printed.contains("changes the tree"),
+            is_remarked,
+            "{driver}"
+        );
+    }
+}

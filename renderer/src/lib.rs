@@ -22,6 +22,7 @@ mod priority;
 mod ray_tree;
 mod reconstruct;
 mod refine;
+mod remark;
 mod render_image;
 mod sampler;
 mod scene;

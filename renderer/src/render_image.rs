@@ -14,6 +14,7 @@ use crate::image_request::ImageRequest;
 use crate::opponent_exr;
 use crate::reconstruct::reconstruct;
 use crate::refine::trace;
+use crate::remark;
 use crate::sampler::Sampler;
 use crate::srgb_png::SrgbEncoder;
 
@@ -30,6 +31,8 @@ pub struct ImageSummary {
     pub rectangles: PerChannel<u64>,
     /// Pixels that had to be clipped to the sRGB gamut.
     pub out_of_gamut_px: u32,
+    /// What a reader of the image must know.
+    pub remark: Option<&'static str>,
 }
 
 impl fmt::Display for ImageSummary {
@@ -42,7 +45,11 @@ impl fmt::Display for ImageSummary {
             formatter,
             "{} pixels out of the sRGB gamut",
             self.out_of_gamut_px
-        )
+        )?;
+        match self.remark {
+            Some(remark) => write!(formatter, "\nremark: {remark}"),
+            None => Ok(()),
+        }
     }
 }
 
@@ -111,6 +118,7 @@ pub fn render_image_of(
             c2: *c2_count,
         },
         out_of_gamut_px: picture.out_of_gamut_px,
+        remark: remark::of_driver(request.tree.driver),
     })
 }
 

@@ -11,8 +11,8 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use protocols::{
-    Access, Channel, Manifest, ManifestFile, ManifestStimulus, PerChannel, RayCount,
-    RefinementDriver, Sha256Digest, Stimulus, StimulusPlan, Study, write_atomically,
+    Access, Channel, Manifest, ManifestFile, ManifestStimulus, PerChannel, RayCount, Sha256Digest,
+    Stimulus, StimulusPlan, Study, write_atomically,
 };
 use rayon::prelude::*;
 
@@ -22,6 +22,7 @@ use crate::image_request::ImageRequest;
 use crate::opponent_exr;
 use crate::reconstruct::reconstruct;
 use crate::refine::{TracePlan, trace};
+use crate::remark;
 use crate::sampler::Sampler;
 use crate::screen_tree::{Reach, ScreenTree};
 use crate::set_summary::{SetSummary, StimulusSummary};
@@ -30,9 +31,6 @@ use crate::srgb_png::SrgbEncoder;
 const COLOR_SPACE: &str = "EXR: opponent channels A, C1, C2 of Meyer & Liu (1992), Eq. 2 on CIE 1931 2-degree \
     tristimulus values, linear, display white D65 at (1.0001, -0.0293, 0.5537). PNG: sRGB (IEC 61966-2-1), 8 bits, \
     white D65.";
-
-const TIED_CHANNELS: &str = "All three channels drive the refinement: stopping one of them changes the tree of the \
-    others, so that an image traced alone differs from the one here.";
 
 /// The images of one channel, by their ray counts.
 type ImagesByRays = BTreeMap<RayCount, ChannelImage>;
@@ -181,7 +179,6 @@ fn write_stimulus(
 
 fn manifest(study: &Study, scene_sha256: Sha256Digest, stimuli: Vec<ManifestStimulus>) -> Manifest {
     let plan = &study.protocol.stimuli;
-    let is_tied = plan.tree.driver == RefinementDriver::All;
     Manifest {
         set: plan.set.clone(),
         acuity_version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -189,8 +186,8 @@ fn manifest(study: &Study, scene_sha256: Sha256Digest, stimuli: Vec<ManifestStim
         scene_sha256,
         plan: plan.clone(),
         color_space: COLOR_SPACE.to_owned(),
-        remarks: is_tied
-            .then(|| TIED_CHANNELS.to_owned())
+        remarks: remark::of_driver(study.protocol.stimuli.tree.driver)
+            .map(str::to_owned)
             .into_iter()
             .collect(),
         viewing: study.protocol.viewing.into(),
