@@ -43,7 +43,7 @@ pub(crate) enum Command {
 #[derive(Debug, Args)]
 pub(crate) struct StimuliFolder {
     /// Folder of the stimulus set [default: stimuli/<set>]
-    #[arg(long = "stimuli", value_name = "DIR")]
+    #[arg(id = "stimuli", long, value_name = "DIR")]
     named: Option<PathBuf>,
 }
 
@@ -58,7 +58,7 @@ impl StimuliFolder {
 #[derive(Debug, Args)]
 pub(crate) struct DataFolder {
     /// Folder of the ratings [default: data/<study>]
-    #[arg(long = "data", value_name = "DIR")]
+    #[arg(id = "data", long, value_name = "DIR")]
     named: Option<PathBuf>,
 }
 

@@ -107,9 +107,10 @@ fn a_session_does_not_start_without_the_stimulus_set() {
     ] {
         refused(folder.path(), command, "acuity render");
     }
-    let checked = acuity(folder.path(), &["check", PROTOCOL]);
+    let named = ["check", PROTOCOL, "--stimuli", "here", "--data", "there"];
+    let checked = acuity(folder.path(), &named);
     assert_eq!(checked.status.code(), Some(2), "{}", stderr(&checked));
-    assert!(text_of(&checked.stdout).contains("manifest.json"));
+    assert!(text_of(&checked.stdout).contains("here/manifest.json"));
 }
 
 #[test]
