@@ -42,7 +42,7 @@ pub(crate) enum Command {
 
 #[derive(Debug, Args)]
 pub(crate) struct StimuliFolder {
-    /// Folder of the stimulus set [default: stimuli/<set>]
+    /// Folder of the stimulus set [default: stimuli/SET]
     #[arg(id = "stimuli", long, value_name = "DIR")]
     named: Option<PathBuf>,
 }
@@ -57,7 +57,7 @@ impl StimuliFolder {
 
 #[derive(Debug, Args)]
 pub(crate) struct DataFolder {
-    /// Folder of the ratings [default: data/<study>]
+    /// Folder of the ratings [default: data/STUDY]
     #[arg(id = "data", long, value_name = "DIR")]
     named: Option<PathBuf>,
 }
@@ -84,7 +84,7 @@ pub(crate) struct CheckArguments {
 pub(crate) struct RenderArguments {
     /// The protocol file.
     pub(crate) protocol: PathBuf,
-    /// Folder for the images and their manifest [default: stimuli/<set>]
+    /// Folder for the images and their manifest [default: stimuli/SET]
     #[arg(long)]
     pub(crate) out: Option<PathBuf>,
     /// How many threads [default: one for each core]
@@ -173,7 +173,7 @@ pub(crate) struct SimulateArguments {
     pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) stimuli: StimuliFolder,
-    /// Folder of the simulated ratings [default: data/<study>-simulated]
+    /// Folder of the simulated ratings [default: data/STUDY-simulated]
     #[arg(long)]
     pub(crate) data: Option<PathBuf>,
 }
@@ -184,7 +184,7 @@ pub(crate) struct ReportArguments {
     pub(crate) protocol: PathBuf,
     #[command(flatten)]
     pub(crate) data: DataFolder,
-    /// Folder for the report [default: reports/<study>, or reports/<study>-simulated]
+    /// Folder for the report [default: reports/STUDY, or reports/STUDY-simulated]
     #[arg(long)]
     pub(crate) out: Option<PathBuf>,
     /// Analyse trial runs (`run --pilot`) too.
