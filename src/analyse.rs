@@ -1,6 +1,6 @@
 //! `acuity report` and `anova`: from ratings to an analysis of variance.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use analysis::{Design, Pilots};
 use protocols::Study;
@@ -11,23 +11,19 @@ use crate::console;
 pub(crate) fn report(arguments: &ReportArguments) -> anyhow::Result<()> {
     let study = Study::read(&arguments.protocol)?;
     let data = arguments.data.of(&study);
-    let out = arguments
-        .out
-        .clone()
-        .unwrap_or_else(|| report_dir(&study, &data));
     let pilots = if arguments.include_pilot {
         Pilots::Included
     } else {
         Pilots::LeftOut
     };
-    write_report(&study, &data, &out, pilots)
+    write_report(&study, &data, arguments.out.as_deref(), pilots)
 }
 
 /// Writes the report and prints its warnings, its test statistics and, last, its path.
 pub(crate) fn write_report(
     study: &Study,
     data: &Path,
-    out: &Path,
+    out: Option<&Path>,
     pilots: Pilots,
 ) -> anyhow::Result<()> {
     let summary = analysis::report(study, data, out, pilots)?;
@@ -37,15 +33,6 @@ pub(crate) fn write_report(
     console::print(summary.anova.to_text())?;
     console::print(summary.page.display())?;
     Ok(())
-}
-
-/// Beside the people's report, never over it, for a data set of simulated observers.
-pub(crate) fn report_dir(study: &Study, data: &Path) -> PathBuf {
-    let people = study.default_report_dir();
-    match data.file_name() {
-        Some(name) if data.file_name() != people.file_name() => people.with_file_name(name),
-        _ => people,
-    }
 }
 
 pub(crate) fn anova(arguments: &AnovaArguments) -> anyhow::Result<()> {

@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use protocols::{Quadrature, RayCount, RefinementDriver, Study, SubjectId};
+use protocols::{Observer, Quadrature, RayCount, RefinementDriver, Study, SubjectId};
 
 /// A psychophysics experiment harness: scene, rays, tree, channel images, stimuli, session, ratings, ANOVA,
 /// report.
@@ -66,7 +66,7 @@ impl DataFolder {
     /// The folder named, or the study's own.
     pub(crate) fn of(&self, study: &Study) -> PathBuf {
         let named = self.named.clone();
-        named.unwrap_or_else(|| study.default_data_dir())
+        named.unwrap_or_else(|| study.default_data_dir(Observer::Person))
     }
 }
 

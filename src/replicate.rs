@@ -1,9 +1,9 @@
 //! `acuity replicate`: the paper's study end to end, with simulated observers.
 
 use analysis::Pilots;
-use protocols::Study;
+use protocols::{Observer, Study};
 
-use crate::analyse::{report_dir, write_report};
+use crate::analyse::write_report;
 use crate::command_line::ReplicateArguments;
 use crate::console::{self, Progress};
 
@@ -11,8 +11,7 @@ use crate::console::{self, Progress};
 pub(crate) fn replicate(arguments: &ReplicateArguments, progress: Progress) -> anyhow::Result<()> {
     let study = Study::read(&arguments.protocol)?;
     let stimuli = study.default_stimuli_dir();
-    let data = study.default_simulated_data_dir();
-    let out = report_dir(&study, &data);
+    let data = study.default_data_dir(Observer::Simulated);
 
     let set = progress.of("render", |told| {
         renderer::render_set(&study, &stimuli, None, told)
@@ -29,5 +28,5 @@ pub(crate) fn replicate(arguments: &ReplicateArguments, progress: Progress) -> a
         )
     })?;
     console::print(ratings)?;
-    write_report(&study, &data, &out, Pilots::LeftOut)
+    write_report(&study, &data, None, Pilots::LeftOut)
 }

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use experiment::RunOptions;
-use protocols::Study;
+use protocols::{Observer, Study};
 
 use crate::command_line::{CheckArguments, RunArguments, SimulateArguments};
 use crate::console::{self, Progress};
@@ -42,7 +42,7 @@ pub(crate) fn simulate(arguments: &SimulateArguments, progress: Progress) -> any
     let data = arguments
         .data
         .clone()
-        .unwrap_or_else(|| study.default_simulated_data_dir());
+        .unwrap_or_else(|| study.default_data_dir(Observer::Simulated));
     let summary = progress.of("simulate", |told| {
         experiment::simulate(
             &study,

@@ -40,6 +40,9 @@ pub struct ReportSummary {
 /// Analyses the ratings of `study` in `data_dir` and writes the report into `out_dir`: `report.html`,
 /// `anova.json`, `anova.csv`, `means.csv`, `figure-10.svg`, `figure-10.png`.
 ///
+/// Where no `out_dir` is named, simulated observers have a folder of their own, so that their report never
+/// takes the place of people's.
+///
 /// # Errors
 ///
 /// [`AnalysisError::Input`] for ratings that are missing, malformed, mixed or contradict the protocol, and
@@ -47,7 +50,7 @@ pub struct ReportSummary {
 pub fn report(
     study: &Study,
     data_dir: &Path,
-    out_dir: &Path,
+    out_dir: Option<&Path>,
     pilots: Pilots,
 ) -> Result<ReportSummary, AnalysisError> {
     let ratings = StudyRatings::read(study, data_dir, pilots)?;
@@ -85,6 +88,10 @@ pub fn report(
         ("figure-10.png", png_from_svg(&svg, PNG_SCALE)?),
         ("figure-10.svg", svg.into_bytes()),
     ];
+    let out_dir = out_dir.map_or_else(
+        || study.default_report_dir(ratings.observer),
+        Path::to_owned,
+    );
     let mut files = Vec::new();
     for (name, bytes) in contents {
         let file = out_dir.join(name);

@@ -188,14 +188,16 @@ impl StudyRatings {
     }
 
     fn nothing_to_analyse(&self, study: &Study) -> InputError {
-        let found = if self.pilots_left_out.is_empty() {
-            "no ratings".to_owned()
+        let (found, or_pilots) = if self.pilots_left_out.is_empty() {
+            ("no ratings".to_owned(), "")
         } else {
-            format!("only trial runs ({})", self.pilots_left_out.join(", "))
+            let files = self.pilots_left_out.join(", ");
+            let or_pilots = ", or analyse the trial runs with --include-pilot";
+            (format!("only trial runs ({files})"), or_pilots)
         };
         let protocol = study.path.display();
         InputError::new(&self.folder, found, "at least one session's ratings").remedy(format!(
-            "run `acuity run {protocol} --subject ID` or `acuity simulate {protocol}` first"
+            "run `acuity run {protocol} --subject ID` or `acuity simulate {protocol}` first{or_pilots}"
         ))
     }
 

@@ -41,7 +41,12 @@ impl Trial {
     }
 
     fn report(&self) -> Result<ReportSummary, AnalysisError> {
-        report(&self.study, &self.data(), &self.out(), Pilots::LeftOut)
+        report(
+            &self.study,
+            &self.data(),
+            Some(&self.out()),
+            Pilots::LeftOut,
+        )
     }
 
     fn page(&self) -> String {
@@ -230,7 +235,13 @@ fn pilots_are_left_out_unless_asked_for() {
             .page()
             .contains("Trial runs left out: study-meyerliu1992_subject-04_session-1_task-pilot")
     );
-    let with_pilots = report(&trial.study, &trial.data(), &trial.out(), Pilots::Included).unwrap();
+    let with_pilots = report(
+        &trial.study,
+        &trial.data(),
+        Some(&trial.out()),
+        Pilots::Included,
+    )
+    .unwrap();
     assert_eq!(with_pilots.n_subjects, 4);
     assert!(trial.page().contains("PILOT"));
 }

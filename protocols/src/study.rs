@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::{InputError, Protocol, ReadError, Sha256Digest};
+use crate::{InputError, Observer, Protocol, ReadError, Sha256Digest};
 
 /// A protocol as it was read from a file.
 #[derive(Clone, Debug)]
@@ -52,18 +52,23 @@ impl Study {
         Path::new("stimuli").join(&self.protocol.stimuli.set)
     }
 
-    /// Where people's ratings stand unless the user says otherwise: `data/<study>`.
-    pub fn default_data_dir(&self) -> PathBuf {
-        Path::new("data").join(&self.protocol.study)
+    /// Where ratings stand unless the user says otherwise: `data/<study>`, for simulated observers
+    /// `data/<study>-simulated`.
+    pub fn default_data_dir(&self, observer: Observer) -> PathBuf {
+        Path::new("data").join(self.folder_name(observer))
     }
 
-    /// Where simulated ratings stand unless the user says otherwise: `data/<study>-simulated`.
-    pub fn default_simulated_data_dir(&self) -> PathBuf {
-        Path::new("data").join(format!("{}-simulated", self.protocol.study))
+    /// Where the report stands unless the user says otherwise: `reports/<study>`, of simulated observers
+    /// `reports/<study>-simulated`.
+    pub fn default_report_dir(&self, observer: Observer) -> PathBuf {
+        Path::new("reports").join(self.folder_name(observer))
     }
 
-    /// Where the report stands unless the user says otherwise: `reports/<study>`.
-    pub fn default_report_dir(&self) -> PathBuf {
-        Path::new("reports").join(&self.protocol.study)
+    fn folder_name(&self, observer: Observer) -> String {
+        let study = &self.protocol.study;
+        match observer {
+            Observer::Person => study.clone(),
+            Observer::Simulated => format!("{study}-simulated"),
+        }
     }
 }
