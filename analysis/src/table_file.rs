@@ -115,7 +115,10 @@ impl<'a> Columns<'a> {
                 (Some(place), None) => Ok(place),
                 (None, _) => {
                     let present: Vec<&str> = header.iter().collect();
-                    let found = format!("the columns {}", present.join(", "));
+                    let found = match present.join(", ") {
+                        none if none.is_empty() => "no columns".to_owned(),
+                        names => format!("the columns {names}"),
+                    };
                     Err(InputError::new(path, found, format!("a column {name:?}")).at("line 1"))
                 }
                 (Some(_), Some(_)) => Err(InputError::new(

@@ -11,7 +11,7 @@ pub enum RendererError {
     #[error(transparent)]
     Input(#[from] InputError),
     /// The system refused a file.
-    #[error("cannot {action} \"{}\": {source}", path.display())]
+    #[error("cannot {action} \"{}\"", path.display())]
     Io {
         /// What was tried: `read`, `write`.
         action: &'static str,
