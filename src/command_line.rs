@@ -88,7 +88,7 @@ pub(crate) struct RenderArguments {
     #[arg(long)]
     pub(crate) out: Option<PathBuf>,
     /// How many threads [default: one for each core]
-    #[arg(long)]
+    #[arg(long, value_parser = threads)]
     pub(crate) threads: Option<NonZeroUsize>,
 }
 
@@ -127,7 +127,7 @@ pub(crate) struct ImageArguments {
     #[arg(long)]
     pub(crate) depth_c2: Option<u32>,
     /// How many threads [default: one for each core]
-    #[arg(long)]
+    #[arg(long, value_parser = threads)]
     pub(crate) threads: Option<NonZeroUsize>,
     /// The image: .exr (A, C1, C2) or .png (sRGB).
     #[arg(short, long)]
@@ -248,6 +248,14 @@ fn driver(text: &str) -> Result<RefinementDriver, String> {
         "AC1C2" => Ok(RefinementDriver::All),
         _ => Err(format!("found the driver {text:?}, expected A or AC1C2")),
     }
+}
+
+fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    let threads = text
+        .parse()
+        .ok()
+        .filter(|threads: &NonZeroUsize| threads.get() <= 1024);
+    threads.ok_or_else(|| format!("found {text:?} threads, expected a number from 1 to 1024"))
 }
 
 fn pilot_speed(text: &str) -> Result<f64, String> {

@@ -5,7 +5,8 @@
 use std::fs;
 use std::path::Path;
 
-use protocols::DataSet;
+use protocols::rating::RatingRow;
+use protocols::{DataSet, Observer};
 use serde_json::Value;
 
 /// The facts of one session that its rows do not hold; `None` where the sidecar is silent.
@@ -13,6 +14,12 @@ use serde_json::Value;
 pub(crate) struct SidecarFacts {
     /// Whether there is a sidecar that can be read.
     pub(crate) is_readable: bool,
+    /// Who rated, as the sidecar says it: `person` or `simulated`.
+    pub(crate) observer: Option<String>,
+    /// The code of the subject.
+    pub(crate) subject_id: Option<String>,
+    /// The sitting.
+    pub(crate) session_id: Option<u64>,
     /// The digest of the protocol that the session followed.
     pub(crate) protocol_sha256: Option<String>,
     /// The digest of the manifest of the images shown.
@@ -33,10 +40,34 @@ impl SidecarFacts {
         let text = |key: &str| value.get(key).and_then(Value::as_str).map(str::to_owned);
         Self {
             is_readable: true,
+            observer: text("observer"),
+            subject_id: text("subject_id"),
+            session_id: value.get("session_id").and_then(Value::as_u64),
             protocol_sha256: text("protocol_sha256"),
             manifest_sha256: text("manifest_sha256"),
             acuity_version: text("acuity_version"),
         }
+    }
+
+    /// What the sidecar says of itself that its rows deny: the key, what it has, what the rows have.
+    pub(crate) fn contradiction(&self, row: &RatingRow) -> Option<(&'static str, String, String)> {
+        let session_id = self.session_id.map(|session| session.to_string());
+        let observer = match row.observer {
+            Observer::Person => "person",
+            Observer::Simulated => "simulated",
+        };
+        [
+            ("observer", self.observer.clone(), observer.to_owned()),
+            (
+                "subject_id",
+                self.subject_id.clone(),
+                row.subject_id.to_string(),
+            ),
+            ("session_id", session_id, row.session_id.to_string()),
+        ]
+        .into_iter()
+        .filter_map(|(key, said, rated)| Some((key, said?, rated)))
+        .find(|(_, said, rated)| said != rated)
     }
 
     /// What is amiss for a session of the protocol with this digest.

@@ -113,6 +113,7 @@ impl StudyRatings {
         });
         ratings.check_each_trial_once(study)?;
         ratings.note_other_images();
+        ratings.note_repeated_sittings();
         Ok(ratings)
     }
 
@@ -145,11 +146,24 @@ impl StudyRatings {
             .collect();
         if let Some(first) = kept.first() {
             let session = session_record(path, first, &kept)?;
+            if let Some((key, found, rated)) = session.sidecar.contradiction(first) {
+                let sidecar = DataSet::sidecar_path(path);
+                let expected = format!("{rated}, as in the rows of the ratings file");
+                return Err(InputError::new(sidecar, found, expected)
+                    .at(format!("key {key}"))
+                    .remedy("restore both files as the session wrote them")
+                    .into());
+            }
             if let Some(complaint) = session.sidecar.complaint(study.sha256.as_str()) {
                 self.warnings
                     .push(format!("{}: {complaint}", session.file_name));
             }
             self.sessions.push(session);
+        } else if !is_pilot && !file_name(path).contains("_task-pilot_") {
+            let name = file_name(path);
+            self.warnings.push(format!(
+                "{name}: a session was begun, but no test trial is rated; its subject is left out"
+            ));
         }
         Ok(kept)
     }
@@ -179,6 +193,22 @@ impl StudyRatings {
         }
     }
 
+    /// Says whose ratings come from more than one session.
+    fn note_repeated_sittings(&mut self) {
+        let mut sittings: BTreeMap<&SubjectId, usize> = BTreeMap::new();
+        for session in &self.sessions {
+            *sittings.entry(&session.subject).or_default() += 1;
+        }
+        let repeated = sittings.into_iter().filter(|&(_, count)| count > 1);
+        let warnings = repeated.map(|(subject, count)| {
+            format!(
+                "subject {subject} sat {count} sessions; the ratings of each image are averaged"
+            )
+        });
+        let warnings: Vec<String> = warnings.collect();
+        self.warnings.extend(warnings);
+    }
+
     /// The digest of the digests of all files, in the order of their names.
     pub(crate) fn sha256(&self) -> Sha256Digest {
         let lines: Vec<String> = (self.sessions.iter())
@@ -197,7 +227,7 @@ impl StudyRatings {
         };
         let protocol = study.path.display();
         InputError::new(&self.folder, found, "at least one session's ratings").remedy(format!(
-            "run `acuity run {protocol} --subject ID` or `acuity simulate {protocol}` first{or_pilots}"
+            "run `acuity run {protocol} --subject ID` first, or name another data set with --data{or_pilots}"
         ))
     }
 
@@ -232,7 +262,7 @@ fn ratings_files(folder: &Path, study: &Study) -> Result<Vec<PathBuf>, AnalysisE
         std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory => {
             let protocol = study.path.display();
             let remedy = format!(
-                "run `acuity run {protocol} --subject ID` or `acuity simulate {protocol}` first, or name the folder with --data"
+                "run `acuity run {protocol} --subject ID` first, or name another data set with --data"
             );
             InputError::new(folder, format!("no such folder ({error})"), kind)
                 .remedy(remedy)
@@ -278,15 +308,55 @@ fn check_row(study: &Study, path: &Path, index: usize, row: &RatingRow) -> Resul
             .at(format!("line {}, column rating", line(index)))
             .remedy("the session was run with another scale, or the file was changed"));
     }
-    let is_named_so = file_name(path).contains(&format!("_subject-{}_", row.subject_id));
-    if !is_named_so {
-        let found = format!("the subject {}", row.subject_id);
-        return Err(
-            InputError::new(path, found, "the subject that the file name says")
-                .at(format!("line {}, column subject_id", line(index))),
-        );
+    check_name(study, path, index, row)?;
+    let session = &study.protocol.session;
+    let n_rated = study
+        .protocol
+        .stimuli
+        .stimuli()
+        .iter()
+        .filter(|s| !s.sequences.is_empty())
+        .count();
+    let n_trials = session.practice.len() + n_rated * session.blocks as usize;
+    let out_of_range = |column: &str, found: u32, most: usize| {
+        Err(InputError::new(
+            path,
+            found.to_string(),
+            format!("a number from 1 to {most}"),
+        )
+        .at(format!("line {}, column {column}", line(index)))
+        .remedy("restore the file as the session wrote it"))
+    };
+    if !(1..=n_trials).contains(&(row.trial_id as usize)) {
+        return out_of_range("trial_id", row.trial_id, n_trials);
+    }
+    if row.phase == Phase::Test && !(1..=session.blocks).contains(&row.repetition) {
+        return out_of_range("repetition", row.repetition, session.blocks as usize);
     }
     Ok(())
+}
+
+/// Checks that the row belongs to the subject, the session and the task that the file is named for.
+fn check_name(study: &Study, path: &Path, index: usize, row: &RatingRow) -> Result<(), InputError> {
+    let task = if row.pilot { "pilot" } else { "rating" };
+    let data_set = DataSet::new("", &study.protocol.study);
+    let named = data_set.ratings_path(&row.subject_id, row.session_id, task);
+    if file_name(&named) == file_name(path) {
+        return Ok(());
+    }
+    let found = format!(
+        "subject {}, session {}, pilot {}",
+        row.subject_id, row.session_id, row.pilot
+    );
+    Err(InputError::new(path, found, "what the file name says")
+        .at(format!(
+            "line {}, columns subject_id, session_id and pilot",
+            line(index)
+        ))
+        .remedy(format!(
+            "these belong in a file named {}",
+            file_name(&named)
+        )))
 }
 
 /// The level of each factor of each stimulus, by the protocol.

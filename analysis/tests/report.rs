@@ -392,9 +392,13 @@ fn malformed_and_contradictory_ratings_are_refused_with_their_line() {
             "test,a011k_c140k,1,achromatic",
             "line 5, column stimulus_id",
         ),
-        ("02,1,4,test", "03,1,4,test", "line 5, column subject_id"),
+        ("02,1,4,test", "03,1,4,test", "line 5, columns subject_id"),
         ("02,1,4,test", "02,one,4,test", "line 5, column session_id"),
         ("02,1,5,test", "02,1,4,test", "trial 4"),
+        ("02,1,4,test", "02,2,4,test", "line 5, columns subject_id"),
+        ("02,1,4,test", "02,1,999,test", "line 5, column trial_id"),
+        ("140k,1,", "140k,2,", "line 5, column repetition"),
+        (",false", ",true", "line 5, columns subject_id"),
         ("response_time_s", "reaction_time_s", "line 1"),
     ];
     for (from, to, place) in cases {

@@ -28,6 +28,9 @@ use crate::order::Trial;
 use protocols::rating::Phase;
 use protocols::{Layout, Scale, SessionPlan};
 
+/// Characters of a typed number; a scale has at most three digits and a sign.
+const MOST_TYPED: usize = 4;
+
 /// What the machine must know of the protocol.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rules {
@@ -181,6 +184,8 @@ struct Exposed {
     onset_s: Option<f64>,
     offset_s: Option<f64>,
     missed_frames: u32,
+    /// When the scale was first submitted.
+    scale_s: Option<f64>,
 }
 
 /// One sitting of one subject.
@@ -341,7 +346,11 @@ impl Session {
             Screen::Exposure(_, picture) => picture.has_test_image(),
             _ => false,
         };
+        let is_scale = self.screen() == Screen::Rating;
         let exposed = &mut self.exposed;
+        if is_scale {
+            exposed.scale_s = exposed.scale_s.or(Some(at_s));
+        }
         if has_test_image {
             exposed.onset_s = Some(at_s);
         } else if exposed.onset_s.is_some() {
@@ -435,11 +444,10 @@ impl Session {
                     self.view = View::default();
                 }
             },
-            Key::Enter if self.is_rating() => {
-                if let Ok(rating) = self.typed.parse() {
-                    self.rate(rating, at_s);
-                }
-            }
+            Key::Enter if self.is_rating() => match self.typed.parse() {
+                Ok(rating) if self.rules.scale.contains(rating) => self.rate(rating, at_s),
+                _ => self.typed.clear(),
+            },
             Key::Backspace if self.is_rating() => {
                 self.typed.pop();
             }
@@ -453,12 +461,12 @@ impl Session {
         self.asking.is_none() && self.state == State::Rating
     }
 
-    /// Adds a character if a rating of the scale begins so.
+    /// Adds a digit, or the sign of a scale that goes below zero. A number off the scale can be typed but
+    /// not entered, so that a digit too many never turns it into another rating.
     fn type_character(&mut self, character: char) {
-        let longer = format!("{}{character}", self.typed);
-        let mut ratings = self.rules.scale.ratings();
-        if ratings.any(|rating| rating.to_string().starts_with(&longer)) {
-            self.typed = longer;
+        let is_sign = character == '-' && self.typed.is_empty() && self.rules.scale.lowest < 0;
+        if (character.is_ascii_digit() || is_sign) && self.typed.len() < MOST_TYPED {
+            self.typed.push(character);
         }
     }
 
@@ -467,7 +475,7 @@ impl Session {
         let (Some(onset_s), Some(offset_s)) = (exposed.onset_s, exposed.offset_s) else {
             return;
         };
-        let Some(shown_s) = self.view.shown_s else {
+        let (Some(scale_s), Some(_)) = (exposed.scale_s, self.view.shown_s) else {
             return;
         };
         if !self.rules.scale.contains(rating) {
@@ -476,7 +484,7 @@ impl Session {
         self.go(State::Saving(Answer {
             trial: self.trial,
             rating,
-            response_time_s: at_s - shown_s,
+            response_time_s: at_s - scale_s,
             exposure_submitted_s: offset_s - onset_s,
             missed_frames: exposed.missed_frames,
             started_s: exposed.started_s,

@@ -148,29 +148,38 @@ impl Sidecar {
             fs::read_to_string(path).map_err(|error| ReadError::from_io(path, kind, error))?;
         let found: Self = serde_json::from_str(&text)
             .map_err(|error| InputError::new(path, error.to_string(), kind))?;
-        let agreements = [
-            ("study", found.study == expected.study),
-            ("subject_id", found.key == expected.key),
-            (
-                "protocol_sha256",
-                found.protocol_sha256 == expected.protocol_sha256,
-            ),
-            (
-                "manifest_sha256",
-                found.manifest_sha256 == expected.manifest_sha256,
-            ),
-        ];
-        match agreements.into_iter().find(|(_, is_same)| !is_same) {
+        let facts = found.identity().into_iter().zip(expected.identity());
+        let mut contradictions = facts.filter(|(found, expected)| found != expected);
+        match contradictions.next() {
             None => Ok(found),
-            Some((field, _)) => Err(InputError::new(
-                path,
-                "a session that was begun with other values",
-                "the protocol, the stimulus set and the --pilot speed with which it was begun",
-            )
-            .at(format!("field {field}"))
-            .remedy("resume with the same files, or take another subject code")
-            .into()),
+            Some(((field, begun_with), (_, expected))) => {
+                let found = format!("a session that was begun with {begun_with}");
+                Err(InputError::new(path, found, expected)
+                    .at(format!("field {field}"))
+                    .remedy("resume with what it was begun with, or take another subject code")
+                    .into())
+            }
         }
+    }
+
+    /// What may not change while a session is resumed: fields and their values.
+    fn identity(&self) -> [(&'static str, String); 5] {
+        let speed = self.key.pilot_speed;
+        let speed = speed.map_or_else(|| "none".to_owned(), |speed| speed.to_string());
+        let SessionKey {
+            subject_id,
+            session_id,
+            observer,
+            ..
+        } = &self.key;
+        let session = format!("subject {subject_id}, session {session_id}, {observer:?}");
+        [
+            ("study", self.study.clone()),
+            ("protocol_sha256", self.protocol_sha256.to_string()),
+            ("manifest_sha256", self.manifest_sha256.to_string()),
+            ("pilot_speed (--pilot speed)", speed),
+            ("subject_id, session_id, observer", session),
+        ]
     }
 
     /// Writes the sidecar, whole or not at all.

@@ -72,6 +72,17 @@ pub(crate) struct Sitting {
     sidecar_path: PathBuf,
     exposure_requested_s: f64,
     clock_zero: Timestamp,
+    is_begun: bool,
+}
+
+impl Drop for Sitting {
+    /// A session that no window ever showed leaves no file.
+    fn drop(&mut self) {
+        if !self.is_begun && self.log.rated() == 0 && !self.sidecar_path.exists() {
+            // What cannot be removed is an empty session, which the next start resumes.
+            _ = std::fs::remove_file(self.log.path());
+        }
+    }
 }
 
 impl Sitting {
@@ -115,11 +126,13 @@ impl Sitting {
             sidecar_path,
             exposure_requested_s: study.protocol.session.exposure_s,
             clock_zero,
+            is_begun: false,
         })
     }
 
     /// Notes on disk that the sitting has begun on this computer.
     pub(crate) fn begin(&mut self, station: Station, at_s: f64) -> Result<(), ExperimentError> {
+        self.is_begun = true;
         self.sidecar.sittings.push(sidecar::Sitting {
             started_at: utc(self.clock_zero, at_s),
             first_trial_id: self.session.rated() + 1,

@@ -239,15 +239,21 @@ fn nothing_is_preselected() {
 }
 
 #[test]
-fn ten_is_typed_as_one_and_nought_and_what_is_off_the_scale_cannot_be_typed() {
+fn ten_is_typed_as_one_and_nought_and_what_is_off_the_scale_is_never_another_rating() {
     let mut screening = Screening::new(FLANKING);
     screening.click(Button::Continue);
     screening.until_scale();
-    screening.type_all("x-12");
-    assert_eq!(screening.session.typed(), "1");
+    for off_scale in ["12", "77", "011", ""] {
+        screening.type_all(off_scale);
+        assert_eq!(screening.session.typed(), off_scale);
+        screening.key(Key::Enter);
+        assert_eq!(screening.session.to_save(), None, "{off_scale}");
+        assert_eq!(screening.session.typed(), "");
+    }
+    screening.type_all("x-1.1");
+    assert_eq!(screening.session.typed(), "11");
     screening.key(Key::Backspace);
-    screening.type_all("10.05");
-    assert_eq!(screening.session.typed(), "10");
+    screening.type_all("0");
     screening.key(Key::Enter);
     assert_eq!(screening.session.to_save().unwrap().rating, 10);
 }
@@ -261,12 +267,29 @@ fn a_scale_below_zero_is_typed_with_a_minus() {
     let mut screening = Screening::new(Rules { scale, ..FLANKING });
     screening.click(Button::Continue);
     screening.until_scale();
-    screening.type_all("-");
-    screening.key(Key::Enter);
-    assert_eq!(screening.session.to_save(), None);
-    screening.type_all("42");
+    for off_scale in ["-", "-4", "42"] {
+        screening.type_all(off_scale);
+        screening.key(Key::Enter);
+        assert_eq!(screening.session.to_save(), None);
+    }
+    screening.type_all("-2");
     screening.key(Key::Enter);
     assert_eq!(screening.session.to_save().unwrap().rating, -2);
+}
+
+#[test]
+fn the_response_time_runs_on_while_the_subject_is_asked_whether_to_stop() {
+    let mut screening = Screening::new(FLANKING);
+    screening.click(Button::Continue);
+    screening.until_scale();
+    screening.key(Key::Escape);
+    // Two seconds at 60 frames a second.
+    screening.frames(120);
+    screening.key(Key::Escape);
+    screening.frames(2);
+    screening.type_all("5");
+    screening.key(Key::Enter);
+    assert!(screening.session.to_save().unwrap().response_time_s >= 2.0);
 }
 
 #[test]

@@ -94,6 +94,16 @@ impl Record {
         Some((self.submitted[first].0, after_s))
     }
 
+    /// When the first frame with the scale came after the last one of the exposure: questions in between
+    /// do not stop the response time.
+    fn first_scale_after(&self, trial: usize, picture: Picture) -> Option<f64> {
+        let is_exposure = |&(_, screen): &(f64, Screen)| screen == Screen::Exposure(trial, picture);
+        let last = self.submitted.iter().rposition(is_exposure)?;
+        let mut later = self.submitted[last..].iter();
+        let (at_s, _) = later.find(|&&(_, screen)| screen == Screen::Rating)?;
+        Some(*at_s)
+    }
+
     fn check_answer(&self, answer: &Answer, by_click: Option<Button>, picture: Picture) {
         assert_eq!(answer.trial, self.answers.len(), "in order, none twice");
         assert!(SCALE.contains(answer.rating));
@@ -107,7 +117,8 @@ impl Record {
             "a whole exposure, not {exposure_s} s"
         );
         let (scale_s, _) = self.last_run(|screen| screen == Screen::Rating).unwrap();
-        assert_eq!(answer.response_time_s, self.now_s - scale_s);
+        let first_scale_s = self.first_scale_after(answer.trial, picture).unwrap();
+        assert_eq!(answer.response_time_s, self.now_s - first_scale_s);
         if let Some(released) = by_click {
             let (pressed_s, pressed) = self.pressed_s.unwrap();
             assert!(pressed_s >= scale_s, "pressed before the scale was there");

@@ -98,7 +98,8 @@ impl ReadError {
     /// `kind` says what the file should have been, such as `a protocol (TOML)`.
     pub fn from_io(file: &Path, kind: &str, source: std::io::Error) -> Self {
         match source.kind() {
-            std::io::ErrorKind::NotFound | std::io::ErrorKind::IsADirectory => {
+            std::io::ErrorKind::IsADirectory => InputError::new(file, "a folder", kind).into(),
+            std::io::ErrorKind::NotFound => {
                 InputError::new(file, format!("no such file ({source})"), kind).into()
             }
             std::io::ErrorKind::InvalidData => {

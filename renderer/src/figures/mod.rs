@@ -38,19 +38,11 @@ pub fn draw_figures(
 ) -> Result<Vec<PathBuf>, RendererError> {
     let set = VerifiedSet::read(study, stimuli_dir)?;
     let rasterizer = Rasterizer::new();
-    let mut files = Vec::new();
-    let mut keep = |name: &str, bytes: &[u8]| {
-        let path = out.join(name);
-        write_atomically(&path, bytes, Access::Ordinary)
-            .map_err(|error| RendererError::writing(&path, error))?;
-        files.push(path);
-        Ok::<_, RendererError>(())
-    };
-    fs::create_dir_all(out).map_err(|error| RendererError::writing(out, error))?;
+    let mut drawn: Vec<(PathBuf, Vec<u8>)> = Vec::new();
     for (name, svg) in sensitivity_plot::figures_3_and_4() {
         let png = rasterizer.png(&svg, 2.0, &out.join(name))?;
-        keep(&format!("{name}.svg"), svg.as_bytes())?;
-        keep(&format!("{name}.png"), &png)?;
+        drawn.push((out.join(format!("{name}.svg")), svg.into_bytes()));
+        drawn.push((out.join(format!("{name}.png")), png));
     }
     let sheets = [
         ("figure-6.png", Some(figure_6(&set)?)),
@@ -66,10 +58,18 @@ pub fn draw_figures(
     ];
     for (name, sheet) in sheets {
         if let Some(sheet) = sheet {
-            keep(name, &sheet.png(&rasterizer, &out.join(name))?)?;
+            let path = out.join(name);
+            let png = sheet.png(&rasterizer, &path)?;
+            drawn.push((path, png));
         }
     }
-    Ok(files)
+    // Only now, when every image has been read and found good, is anything written.
+    fs::create_dir_all(out).map_err(|error| RendererError::writing(out, error))?;
+    for (path, bytes) in &drawn {
+        write_atomically(path, bytes, Access::Ordinary)
+            .map_err(|error| RendererError::writing(path, error))?;
+    }
+    Ok(drawn.into_iter().map(|(path, _)| path).collect())
 }
 
 /// The three channels of the ten anchor.

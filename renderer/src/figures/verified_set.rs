@@ -49,7 +49,19 @@ impl<'a> VerifiedSet<'a> {
     ) -> Result<PerChannel<ChannelImage>, RendererError> {
         let file = &self.stimulus(rays_a, rays_c1c2)?.exr;
         let bytes = file.read_verified(self.folder)?;
-        Ok(read_opponent_exr(&bytes, &self.folder.join(&file.name))?)
+        let path = self.folder.join(&file.name);
+        let channels = read_opponent_exr(&bytes, &path)?;
+        self.check_size(channels.a.size_px(), &path)?;
+        Ok(channels)
+    }
+
+    fn check_size(&self, found_px: [u32; 2], path: &Path) -> Result<(), InputError> {
+        let size = |[width, height]: [u32; 2]| format!("{width} x {height} pixels");
+        let expected_px = self.plan().size_px;
+        if found_px == expected_px {
+            return Ok(());
+        }
+        Err(InputError::new(path, size(found_px), size(expected_px)).remedy("render the set again"))
     }
 
     /// One image as a display is given it.
@@ -61,13 +73,15 @@ impl<'a> VerifiedSet<'a> {
         let stimulus = self.stimulus(rays_a, rays_c1c2)?;
         let bytes = stimulus.png.read_verified(self.folder)?;
         let decoded = image::load_from_memory_with_format(&bytes, image::ImageFormat::Png);
+        let path = self.folder.join(&stimulus.png.name);
         let picture = decoded.map_err(|error| {
-            let path = self.folder.join(&stimulus.png.name);
-            InputError::new(path, error.to_string(), "a PNG file").remedy("render the set again")
+            InputError::new(&path, error.to_string(), "a PNG file").remedy("render the set again")
         })?;
         let picture = picture.into_rgb8();
+        let size_px = [picture.width(), picture.height()];
+        self.check_size(size_px, &path)?;
         Ok(SrgbImage {
-            size_px: [picture.width(), picture.height()],
+            size_px,
             bytes: picture.into_raw(),
             out_of_gamut_px: stimulus.out_of_gamut_px,
         })
