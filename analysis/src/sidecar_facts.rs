@@ -5,8 +5,8 @@
 use std::fs;
 use std::path::Path;
 
+use protocols::DataSet;
 use protocols::rating::RatingRow;
-use protocols::{DataSet, Observer};
 use serde_json::Value;
 
 /// The facts of one session that its rows do not hold; `None` where the sidecar is silent.
@@ -52,10 +52,7 @@ impl SidecarFacts {
     /// What the sidecar says of itself that its rows deny: the key, what it has, what the rows have.
     pub(crate) fn contradiction(&self, row: &RatingRow) -> Option<(&'static str, String, String)> {
         let session_id = self.session_id.map(|session| session.to_string());
-        let observer = match row.observer {
-            Observer::Person => "person",
-            Observer::Simulated => "simulated",
-        };
+        let observer = row.observer.as_str();
         [
             ("observer", self.observer.clone(), observer.to_owned()),
             (

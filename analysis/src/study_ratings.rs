@@ -87,7 +87,7 @@ impl StudyRatings {
             let rows = ratings.read_file(study, &path, pilots)?;
             for row in &rows {
                 observers
-                    .entry(observer_name(row.observer))
+                    .entry(row.observer.as_str())
                     .or_insert_with(|| (row.observer, file_name(&path)));
             }
             ratings.rows.extend(rows);
@@ -286,13 +286,6 @@ fn ratings_files(folder: &Path, study: &Study) -> Result<Vec<PathBuf>, AnalysisE
 fn file_name(path: &Path) -> String {
     path.file_name()
         .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
-}
-
-fn observer_name(observer: Observer) -> &'static str {
-    match observer {
-        Observer::Person => "person",
-        Observer::Simulated => "simulated",
-    }
 }
 
 /// The line of a row: the header is line 1.

@@ -16,6 +16,16 @@ pub enum Observer {
     Simulated,
 }
 
+impl Observer {
+    /// The word in the ratings and their sidecars.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Person => "person",
+            Self::Simulated => "simulated",
+        }
+    }
+}
+
 /// The folder of a Psych-DS data set and the names in it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DataSet {

@@ -158,10 +158,6 @@ impl RatingRow {
             Phase::Practice => "practice",
             Phase::Test => "test",
         };
-        let observer = match self.observer {
-            Observer::Person => "person",
-            Observer::Simulated => "simulated",
-        };
         let before = [
             self.subject_id.to_string(),
             self.session_id.to_string(),
@@ -177,7 +173,7 @@ impl RatingRow {
             format!("{:.4}", self.exposure_submitted_s),
             self.missed_frames.to_string(),
             self.started_at.clone(),
-            observer.to_owned(),
+            self.observer.as_str().to_owned(),
             self.pilot.to_string(),
         ];
         csv_line(

@@ -1,10 +1,9 @@
 //! From a scene file to pictures: the work of `acuity render` and `acuity image`.
 
-use std::fs;
 use std::num::NonZeroUsize;
 use std::path::Path;
 
-use protocols::{ReadError, Sha256Digest, Study};
+use protocols::Study;
 
 use crate::error::RendererError;
 use crate::image_request::ImageRequest;
@@ -29,7 +28,7 @@ pub fn render_set(
     threads: Option<NonZeroUsize>,
     progress: &(dyn Fn(u64, u64) + Sync),
 ) -> Result<SetSummary, RendererError> {
-    let (scene, scene_sha256) = read_scene(&study.scene_path())?;
+    let (scene, scene_sha256) = Scene::read_with_digest(&study.scene_path())?;
     let plan = &study.protocol.stimuli;
     on_threads(threads, out, || {
         let sampler = scene.sampler(plan.quadrature, plan.size_px);
@@ -52,19 +51,9 @@ pub fn render_image(
 ) -> Result<ImageSummary, RendererError> {
     Format::of(out)?;
     request.check(scene)?;
-    let (scene, scene_sha256) = read_scene(scene)?;
+    let (scene, scene_sha256) = Scene::read_with_digest(scene)?;
     on_threads(request.threads, out, || {
         let sampler = scene.sampler(request.quadrature, request.size_px);
         render_image_of(&sampler, scene_sha256, request, out)
     })
-}
-
-/// The scene of a file, and the digest of the file.
-fn read_scene(path: &Path) -> Result<(Scene, Sha256Digest), RendererError> {
-    let text = fs::read_to_string(path)
-        .map_err(|error| ReadError::from_io(path, "a scene (TOML)", error))?;
-    Ok((
-        Scene::from_toml(path, &text)?,
-        Sha256Digest::of(text.as_bytes()),
-    ))
 }

@@ -47,7 +47,7 @@ mod table;
 
 use std::path::Path;
 
-use protocols::{Quadrature, ReadError};
+use protocols::{Quadrature, ReadError, Sha256Digest};
 
 use crate::RendererError;
 use crate::geometry::Hierarchy;
@@ -79,9 +79,15 @@ impl Scene {
     /// [`RendererError::Input`] if the file is missing, is not TOML, has an unknown or missing key, or says
     /// what cannot be; [`RendererError::Io`] if the system would not give it.
     pub fn read(path: &Path) -> Result<Self, RendererError> {
+        Self::read_with_digest(path).map(|(scene, _)| scene)
+    }
+
+    /// The scene of a file, and the digest of the file.
+    pub(crate) fn read_with_digest(path: &Path) -> Result<(Self, Sha256Digest), RendererError> {
         let text = std::fs::read_to_string(path)
             .map_err(|error| ReadError::from_io(path, "a scene (TOML)", error))?;
-        Self::from_toml(path, &text)
+        let scene = Self::from_toml(path, &text)?;
+        Ok((scene, Sha256Digest::of(text.as_bytes())))
     }
 
     /// Reads the text of a scene; `file` is only named in errors.
