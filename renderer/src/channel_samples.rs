@@ -12,6 +12,14 @@ pub(crate) struct ChannelSamples {
 }
 
 impl ChannelSamples {
+    /// Nothing yet, with room for this many values.
+    pub(crate) fn with_capacity(values: usize) -> Self {
+        Self {
+            values: Vec::with_capacity(values),
+            samples: Vec::new(),
+        }
+    }
+
     /// Adds the value of a sample later than all before.
     pub(crate) fn push(&mut self, sample: u32, value: f32) {
         let is_gapless = self.samples.is_empty() && self.values.len() == sample as usize;

@@ -16,7 +16,7 @@
 
 use protocols::Channel;
 
-use crate::screen_tree::ScreenTree;
+use crate::screen_tree::{PlacedNode, ScreenTree};
 
 /// The mean of a channel over a node's cell, and how sure it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -28,35 +28,46 @@ pub struct Estimate {
 }
 
 impl ScreenTree {
-    /// The estimate of every node of the tree as it stood after `rays` samples, the root first; `None` if
-    /// the channel was not shaded for all of them.
+    /// The estimate of every node of the tree as it stood after `rays` samples, in the order of their
+    /// making, so the root first; `None` if the channel was not shaded for all of them.
     pub fn estimates(&self, channel: Channel, rays: usize) -> Option<Vec<Estimate>> {
-        let nodes = self.nodes(rays);
-        let leaf = |sample| {
-            let mean = f64::from(self.value(channel, sample)?);
-            Some(Estimate {
-                mean,
-                variance: None,
-            })
-        };
-        let leaves: Option<Vec<Estimate>> = nodes.iter().map(|node| leaf(node.sample)).collect();
-        let mut estimates = leaves?;
-        for (index, node) in nodes.iter().enumerate().rev() {
-            let first_child = node.first_child as usize;
-            if first_child == 0 || first_child >= nodes.len() {
-                continue;
+        let rays = rays.clamp(1, self.len());
+        let mut estimates = vec![Estimate::default(); 2 * rays - 1];
+        self.estimate(channel, rays, PlacedNode::ROOT, &mut estimates)?;
+        Some(estimates)
+    }
+
+    /// Estimates a node after all nodes below it.
+    fn estimate(
+        &self,
+        channel: Channel,
+        rays: usize,
+        node: PlacedNode,
+        estimates: &mut [Estimate],
+    ) -> Option<Estimate> {
+        let estimate = if let Some(children) = self.children(node, rays) {
+            let [first, _] = children.map(|child| child.index as usize);
+            let mut below = [Estimate::default(); 2];
+            for (child, estimate) in children.into_iter().zip(&mut below) {
+                *estimate = self.estimate(channel, rays, child, estimates)?;
             }
-            let [one, other] = [estimates[first_child], estimates[first_child + 1]];
+            let [one, other] = below;
             let beside = 0.5 * (one.mean - other.mean).powi(2);
-            for child in &mut estimates[first_child..first_child + 2] {
+            for child in &mut estimates[first..first + 2] {
                 child.variance.get_or_insert(beside);
             }
             let [v1, v2] = [one, other].map(|child| child.variance.unwrap_or(beside));
-            estimates[index] = Estimate {
+            Estimate {
                 mean: 0.5 * (one.mean + other.mean),
                 variance: Some(0.25 * (v1 + v2)),
-            };
-        }
-        Some(estimates)
+            }
+        } else {
+            Estimate {
+                mean: f64::from(self.value(channel, node.sample)?),
+                variance: None,
+            }
+        };
+        estimates[node.index as usize] = estimate;
+        Some(estimate)
     }
 }

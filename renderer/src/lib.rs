@@ -35,6 +35,7 @@ mod srgb;
 mod srgb_png;
 mod stimulus_set;
 mod threads;
+mod waiting;
 
 pub use account::RayAccount;
 pub use cell::{Cell, Rectangle};

@@ -11,21 +11,23 @@
 //!
 //! Source: Meyer & Liu (1992), sections 3.1 to 3.3.
 
-use std::collections::BinaryHeap;
-
 use protocols::{Channel, PerChannel, RefinementDriver};
 use rayon::prelude::*;
 
 use crate::cell::Cell;
-use crate::priority::{Candidate, ExpectedVariance, PriorityRule};
-use crate::sampler::{Sampler, ScreenPoint};
-use crate::screen_tree::{NewSample, Reach, ScreenTree};
+use crate::priority::{ExpectedVariance, PriorityRule};
+use crate::sampler::{GridPoint, Sampler};
+use crate::screen_tree::{NewSample, PlacedNode, Reach, ScreenTree};
+use crate::waiting::{Candidate, Waiting};
 
-/// Leaves split between two looks at the priorities; divides the paper's step of 10K.
+/// Leaves split between two looks at the priorities, until the tree has [`LOOK_SHARE`] times as many.
 ///
 /// Measured on the study's scene: batches of 100, 200 and 500 differ by less than half a percent in the error
 /// of A and not in time.
 pub const BATCH: usize = 100;
+
+/// From then on one leaf in this many is split between two looks, so that a large tree has large batches.
+const LOOK_SHARE: usize = 64;
 
 /// How a screen tree is made.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -52,6 +54,16 @@ impl TracePlan {
     /// Whether a channel says where more samples are needed.
     pub fn is_driver(&self, channel: Channel) -> bool {
         self.driver == RefinementDriver::All || channel == Channel::A
+    }
+
+    /// Room for the values of each channel.
+    fn capacity(&self) -> PerChannel<usize> {
+        PerChannel::from_fn(|channel| {
+            let all = self.driver == RefinementDriver::A && channel == Channel::A;
+            let Reach { rays, depth } = self.stops[channel];
+            let leaves = 1_usize.checked_shl(depth).unwrap_or(usize::MAX);
+            if all { self.rays() } else { rays.min(leaves) }
+        })
     }
 
     /// The depth of the deepest cell: where every driver has stopped there is nothing left to go by.
@@ -89,26 +101,30 @@ pub fn trace<S: Sampler>(
     };
     let mut ray_tree = S::RayTree::default();
     let first = Probe::new(plan, 0, Cell::ROOT).take(sampler, &mut ray_tree);
-    let mut tree = ScreenTree::new(&first);
-    let mut waiting = BinaryHeap::new();
-    let wait = |waiting: &mut BinaryHeap<Candidate>, candidate: Candidate| {
-        if candidate.cell.depth() < plan.deepest() {
-            waiting.push(candidate);
+    let mut tree = ScreenTree::new(&first, &plan.capacity(), rays);
+    let mut waiting = Waiting::new();
+    let wait = |waiting: &mut Waiting, candidate: Candidate| {
+        let cell = candidate.node.cell;
+        if cell.depth() < plan.deepest() {
+            waiting.push(candidate, rule.priority(cell, candidate.expected));
         }
     };
-    let root = Candidate::new(0, Cell::ROOT, ExpectedVariance::default(), rule);
+    let root = Candidate {
+        node: PlacedNode::ROOT,
+        expected: ExpectedVariance::default(),
+    };
     wait(&mut waiting, root);
     while tree.len() < rays {
-        let batch = next_batch(&mut waiting, rays - tree.len(), BATCH - tree.len() % BATCH);
+        let batch = next_batch(&mut waiting, rays - tree.len(), until_next_look(tree.len()));
         if batch.is_empty() {
             break;
         }
         for (candidate, new) in batch.iter().zip(sample_batch(sampler, plan, &tree, &batch)) {
-            let first_child = tree.split(candidate.node, &new);
-            let spread = spread(plan, &tree, first_child);
+            let children = tree.split(candidate.node, &new);
+            let spread = spread(plan, &tree, children);
             let expected = candidate.expected.of_halves(spread);
-            for (child, cell) in (first_child..).zip(candidate.cell.halves()) {
-                wait(&mut waiting, Candidate::new(child, cell, expected, rule));
+            for node in children {
+                wait(&mut waiting, Candidate { node, expected });
             }
         }
         progress(tree.len() as u64, rays as u64);
@@ -116,39 +132,51 @@ pub fn trace<S: Sampler>(
     tree
 }
 
+/// How many leaves are split before the next look at the priorities, when there are this many.
+const fn until_next_look(leaves: usize) -> usize {
+    let share = leaves / LOOK_SHARE;
+    if share < BATCH {
+        BATCH - leaves % BATCH
+    } else {
+        share
+    }
+}
+
 /// The first candidates, no more than either limit; leaves above the minimum depth are never mixed with
 /// others, since their children may be due before those.
 fn next_batch(
-    waiting: &mut BinaryHeap<Candidate>,
+    waiting: &mut Waiting,
     still_to_take: usize,
     until_next_look: usize,
 ) -> Vec<Candidate> {
-    let is_due = waiting.peek().is_some_and(Candidate::is_due);
-    let mut batch = Vec::with_capacity(until_next_look.min(still_to_take));
-    while batch.len() < until_next_look.min(still_to_take)
-        && waiting.peek().is_some_and(|next| next.is_due() == is_due)
-    {
-        batch.extend(waiting.pop());
+    let is_due = waiting.is_due();
+    let most = until_next_look.min(still_to_take);
+    let mut batch = Vec::with_capacity(most);
+    while batch.len() < most && waiting.is_due() == is_due {
+        match waiting.pop() {
+            Some(candidate) => batch.push(candidate),
+            None => break,
+        }
     }
     batch
 }
 
 /// A sample to be taken.
 struct Probe {
-    point: ScreenPoint,
+    point: GridPoint,
     is_shaded: PerChannel<bool>,
 }
 
 impl Probe {
     fn new(plan: &TracePlan, sample: usize, cell: Cell) -> Self {
         Self {
-            point: cell.random_point(plan.seed),
+            point: cell.random_point(plan.seed).into(),
             is_shaded: PerChannel::from_fn(|c| plan.is_shaded(c, sample, cell.depth())),
         }
     }
 
     fn take<S: Sampler>(&self, sampler: &S, ray_tree: &mut S::RayTree) -> NewSample {
-        sampler.intersect(self.point, ray_tree);
+        sampler.intersect(self.point.into(), ray_tree);
         let shade = |channel| self.is_shaded[channel].then(|| sampler.shade(ray_tree, channel));
         NewSample {
             point: self.point,
@@ -166,8 +194,8 @@ fn sample_batch<S: Sampler>(
 ) -> Vec<NewSample> {
     let first = tree.len();
     let take = |ray_tree: &mut S::RayTree, (place, candidate): (usize, &Candidate)| {
-        let old = tree.points()[tree.node(candidate.node).sample as usize];
-        let free_half = candidate.cell.halves()[1 - candidate.cell.half_of(old)];
+        let PlacedNode { sample, cell, .. } = candidate.node;
+        let free_half = cell.halves()[1 - cell.half_of(tree.point(sample))];
         Probe::new(plan, first + place, free_half).take(sampler, ray_tree)
     };
     batch
@@ -186,10 +214,9 @@ fn shown(value: f32) -> f64 {
 /// The variance of the two samples below a split, the largest over the drivers that have both.
 ///
 /// Of what can be shown: a highlight a hundred times as bright as white would draw all samples to itself.
-fn spread(plan: &TracePlan, tree: &ScreenTree, first_child: u32) -> f64 {
-    let samples = [first_child, first_child + 1].map(|child| tree.node(child).sample);
+fn spread(plan: &TracePlan, tree: &ScreenTree, children: [PlacedNode; 2]) -> f64 {
     let of_channel = |channel| {
-        let [one, other] = samples.map(|sample| tree.value(channel, sample));
+        let [one, other] = children.map(|child| tree.value(channel, child.sample));
         let difference = shown(one?) - shown(other?);
         Some(0.5 * difference * difference)
     };

@@ -14,6 +14,35 @@ pub struct ScreenPoint {
     pub y: f64,
 }
 
+/// A point of the screen on a grid of 2³² × 2³², as it is stored: no cell is smaller than two of its steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct GridPoint([u32; 2]);
+
+/// The steps of the grid.
+const STEPS: f64 = 4_294_967_296.0;
+
+impl From<ScreenPoint> for GridPoint {
+    /// The next point of the grid to the left and above, which lies in the same cell.
+    fn from(point: ScreenPoint) -> Self {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "rounded down on purpose; a coordinate is never negative and less than 1"
+        )]
+        let step = |coordinate: f64| (coordinate * STEPS) as u32;
+        Self([step(point.x), step(point.y)])
+    }
+}
+
+impl From<GridPoint> for ScreenPoint {
+    fn from(GridPoint([x, y]): GridPoint) -> Self {
+        Self {
+            x: f64::from(x) / STEPS,
+            y: f64::from(y) / STEPS,
+        }
+    }
+}
+
 /// Something that can be sampled at any point of the screen.
 pub trait Sampler: Sync {
     /// What one ray found: hits, lights that are visible from them, reflected rays; no colour.

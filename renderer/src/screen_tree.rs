@@ -3,7 +3,11 @@
 //! A leaf is one cell of the screen with the sample taken inside it. The first sample is the root's; each
 //! further one splits a leaf: the old sample keeps its half, the new one goes into the other. Nodes stand
 //! in the order of their making and nothing is ever changed, so that the tree as it stood after any number
-//! of samples is a prefix: a node is split there if its children are among the first `2N - 1` nodes.
+//! of samples is a prefix.
+//!
+//! Sample `k` makes the nodes `2k - 1` and `2k`. So a node needs no more than the number of the sample that
+//! split it and which half that sample went into: 4 bytes. Cells and samples of nodes follow on the way
+//! down from the root. With its place (8 bytes) and its values (at most 12) a sample takes 28 bytes.
 //!
 //! Two things hold after every public call, and the tests check them:
 //!
@@ -20,23 +24,71 @@ use protocols::{Channel, PerChannel};
 use crate::account::RayAccount;
 use crate::cell::Cell;
 use crate::channel_samples::ChannelSamples;
-use crate::sampler::ScreenPoint;
+use crate::sampler::{GridPoint, ScreenPoint};
 
 /// A k-D tree over the screen, in the order of its making.
 #[derive(Clone, Debug)]
 pub struct ScreenTree {
     nodes: Vec<Node>,
     samples: PerChannel<ChannelSamples>,
-    points: Vec<ScreenPoint>,
+    points: Vec<GridPoint>,
 }
 
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Node {
-    pub(crate) cell: Cell,
-    /// The sample that the node had as a leaf.
+/// What is stored of a node: 0 for a leaf; else the sample that split it, and above it one bit that says
+/// whether that sample lies in the first half.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Node(u32);
+
+impl Node {
+    const LEAF: Self = Self(0);
+    const NEW_IS_FIRST: u32 = 1 << 31;
+
+    const fn split_by(sample: u32, half: usize) -> Self {
+        Self(sample | if half == 0 { Self::NEW_IS_FIRST } else { 0 })
+    }
+
+    /// The sample that split the node, 0 for a leaf.
+    const fn splitter(self) -> u32 {
+        self.0 & !Self::NEW_IS_FIRST
+    }
+
+    /// The samples of the two children of a node that held `old`.
+    const fn samples_of_children(self, old: u32) -> [u32; 2] {
+        if self.0 & Self::NEW_IS_FIRST == 0 {
+            [old, self.splitter()]
+        } else {
+            [self.splitter(), old]
+        }
+    }
+}
+
+/// A node with what follows from its place in the tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct PlacedNode {
+    /// Its place in the order of making.
+    pub(crate) index: u32,
+    /// The sample that it had as a leaf.
     pub(crate) sample: u32,
-    /// The first of its two children, which stand side by side; 0 for a leaf.
-    pub(crate) first_child: u32,
+    pub(crate) cell: Cell,
+}
+
+impl PlacedNode {
+    pub(crate) const ROOT: Self = Self {
+        index: 0,
+        sample: 0,
+        cell: Cell::ROOT,
+    };
+
+    fn children(self, node: Node) -> [Self; 2] {
+        let first = 2 * node.splitter() - 1;
+        let samples = node.samples_of_children(self.sample);
+        let halves = self.cell.halves();
+        std::array::from_fn(|half| Self {
+            index: if half == 0 { first } else { first + 1 },
+            sample: samples[half],
+            cell: halves[half],
+        })
+    }
 }
 
 /// A leaf as one channel sees it: a cell of the screen and the value found in it.
@@ -70,21 +122,26 @@ impl Reach {
 /// A new sample: where, and the value of each channel that was shaded.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NewSample {
-    pub(crate) point: ScreenPoint,
+    pub(crate) point: GridPoint,
     pub(crate) values: PerChannel<Option<f32>>,
 }
 
 impl ScreenTree {
-    /// The tree of one cell, the screen, with its sample.
-    pub(crate) fn new(first: &NewSample) -> Self {
+    /// The most samples that a tree can hold.
+    pub const MOST_SAMPLES: u32 = Node::NEW_IS_FIRST;
+
+    /// The tree of one cell, the screen, with its sample; with room for `capacity` samples in all.
+    ///
+    /// Room that is not used is not touched, so it takes no memory.
+    pub(crate) fn new(first: &NewSample, capacity: &PerChannel<usize>, rays: usize) -> Self {
+        let mut nodes = Vec::with_capacity(2 * rays);
+        nodes.push(Node::LEAF);
         let mut tree = Self {
-            nodes: vec![Node {
-                cell: Cell::ROOT,
-                sample: 0,
-                first_child: 0,
-            }],
-            samples: PerChannel::default(),
-            points: Vec::new(),
+            nodes,
+            samples: PerChannel::from_fn(|channel| {
+                ChannelSamples::with_capacity(capacity[channel])
+            }),
+            points: Vec::with_capacity(rays),
         };
         tree.store(first);
         tree
@@ -92,24 +149,14 @@ impl ScreenTree {
 
     /// Splits a leaf: its sample keeps the half that it lies in, `new` goes into the other.
     ///
-    /// Gives the first of the two children.
-    pub(crate) fn split(&mut self, leaf: u32, new: &NewSample) -> u32 {
-        let first_child = as_index(self.nodes.len());
-        let new_sample = as_index(self.points.len());
-        let node = &mut self.nodes[leaf as usize];
-        node.first_child = first_child;
-        let Node { cell, sample, .. } = *node;
-        let mut samples = [new_sample; 2];
-        samples[cell.half_of(self.points[sample as usize])] = sample;
-        for (half, sample) in cell.halves().into_iter().zip(samples) {
-            self.nodes.push(Node {
-                cell: half,
-                sample,
-                first_child: 0,
-            });
-        }
+    /// Gives the two children.
+    pub(crate) fn split(&mut self, leaf: PlacedNode, new: &NewSample) -> [PlacedNode; 2] {
+        let old_half = leaf.cell.half_of(self.point(leaf.sample));
+        let node = Node::split_by(as_index(self.points.len()), 1 - old_half);
+        self.nodes[leaf.index as usize] = node;
+        self.nodes.extend([Node::LEAF; 2]);
         self.store(new);
-        first_child
+        leaf.children(node)
     }
 
     fn store(&mut self, new: &NewSample) {
@@ -146,18 +193,13 @@ impl ScreenTree {
     }
 
     /// Where the samples lie, in the order in which they were taken.
-    pub fn points(&self) -> &[ScreenPoint] {
-        &self.points
+    pub fn points(&self) -> Vec<ScreenPoint> {
+        self.points.iter().map(|&point| point.into()).collect()
     }
 
-    pub(crate) fn node(&self, index: u32) -> &Node {
-        &self.nodes[index as usize]
-    }
-
-    /// The nodes of the tree as it stood after `rays` samples.
-    pub(crate) fn nodes(&self, rays: usize) -> &[Node] {
-        let count = 2 * rays.clamp(1, self.len()) - 1;
-        &self.nodes[..count]
+    /// Where a sample lies.
+    pub(crate) fn point(&self, sample: u32) -> ScreenPoint {
+        self.points[sample as usize].into()
     }
 
     /// The value of one channel for a sample, or `None` if the channel had stopped before it.
@@ -165,24 +207,55 @@ impl ScreenTree {
         self.samples[channel].get(sample)
     }
 
-    /// The leaves of one channel, in the order of their making; `None` if the channel stopped earlier.
+    /// The children that a node had after `rays` samples, if it was split by then.
+    pub(crate) fn children(&self, node: PlacedNode, rays: usize) -> Option<[PlacedNode; 2]> {
+        let stored = self.nodes[node.index as usize];
+        let is_split = stored != Node::LEAF && (stored.splitter() as usize) < rays;
+        is_split.then(|| node.children(stored))
+    }
+
+    /// The leaves within a reach, from the upper left: each cell's first half before its second.
+    ///
+    /// A ray count beyond the end of the tree means the whole tree.
+    pub(crate) fn leaf_nodes(&self, reach: Reach) -> impl Iterator<Item = PlacedNode> {
+        let mut waiting = vec![PlacedNode::ROOT];
+        std::iter::from_fn(move || {
+            let mut node = waiting.pop()?;
+            while node.cell.depth() < reach.depth
+                && let Some([first, second]) = self.children(node, reach.rays)
+            {
+                waiting.push(second);
+                node = first;
+            }
+            Some(node)
+        })
+    }
+
+    /// Calls `visit` with the leaves of one channel, each cell's first half before its second.
+    ///
+    /// `None`, after some calls, if the channel stopped earlier. A ray count beyond the end of the tree
+    /// means the whole tree.
+    pub fn visit_leaves(
+        &self,
+        channel: Channel,
+        reach: Reach,
+        mut visit: impl FnMut(&Leaf),
+    ) -> Option<()> {
+        for PlacedNode { cell, sample, .. } in self.leaf_nodes(reach) {
+            let value = self.value(channel, sample)?;
+            visit(&Leaf { cell, value });
+        }
+        Some(())
+    }
+
+    /// The leaves of one channel, each cell's first half before its second; `None` if the channel stopped
+    /// earlier.
     ///
     /// A ray count beyond the end of the tree means the whole tree.
     pub fn leaves(&self, channel: Channel, reach: Reach) -> Option<Vec<Leaf>> {
-        let nodes = self.nodes(reach.rays);
-        let is_leaf = |node: &&Node| {
-            let depth = node.cell.depth();
-            let is_split = node.first_child != 0 && (node.first_child as usize) < nodes.len();
-            depth == reach.depth || (depth < reach.depth && !is_split)
-        };
-        let leaf = |node: &Node| {
-            let value = self.value(channel, node.sample)?;
-            Some(Leaf {
-                cell: node.cell,
-                value,
-            })
-        };
-        nodes.iter().filter(is_leaf).map(leaf).collect()
+        let mut leaves = Vec::with_capacity(reach.rays.min(self.len()));
+        self.visit_leaves(channel, reach, |leaf| leaves.push(*leaf))?;
+        Some(leaves)
     }
 }
 

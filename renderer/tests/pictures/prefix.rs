@@ -16,7 +16,7 @@ fn an_independent_trace_to_any_count_equals_the_snapshot_of_a_longer_one() {
     ] {
         let short = trace(&disc_and_checks(), &plan(rays), &|_, _| ());
         assert_eq!(short.len(), rays);
-        assert_eq!(short.points(), &long.points()[..rays], "{rays} rays");
+        assert_eq!(short.points(), long.points()[..rays], "{rays} rays");
         assert_eq!(
             picture_of(&short, rays),
             picture_of(&long, rays),
@@ -117,7 +117,7 @@ fn another_seed_takes_other_samples() {
         one.points()
             .iter()
             .zip(two.points())
-            .all(|(one, two)| one != two)
+            .all(|(one, two)| *one != two)
     );
 }
 
