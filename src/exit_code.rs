@@ -1,4 +1,5 @@
-//! From an error to the exit code: 2 where the input or the command is wrong, 1 for all else.
+//! From an error to the exit code: 2 where the input or the command is wrong, 130 where the user ended the
+//! work, 1 for all else.
 
 use std::process::ExitCode;
 
@@ -6,6 +7,9 @@ use analysis::AnalysisError;
 use experiment::ExperimentError;
 use protocols::ReadError;
 use renderer::RendererError;
+
+/// What a shell gives for a program that Ctrl-C ended: 128 + SIGINT.
+pub(crate) const INTERRUPTED: u8 = 130;
 
 /// The exit code of an error of any crate.
 pub(crate) fn of(error: &anyhow::Error) -> ExitCode {
@@ -19,5 +23,12 @@ pub(crate) fn of(error: &anyhow::Error) -> ExitCode {
             .downcast_ref::<AnalysisError>()
             .is_some_and(AnalysisError::is_input)
         || matches!(error.downcast_ref(), Some(ReadError::Input(_)));
-    ExitCode::from(if is_input { 2 } else { 1 })
+    let is_interruption = error
+        .downcast_ref::<RendererError>()
+        .is_some_and(RendererError::is_interruption);
+    ExitCode::from(match (is_interruption, is_input) {
+        (true, _) => INTERRUPTED,
+        (false, true) => 2,
+        (false, false) => 1,
+    })
 }

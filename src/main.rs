@@ -1,11 +1,12 @@
 //! The front door: reads the command line, calls one crate, prints what it says.
 //!
-//! Exit codes: 0 done, 1 failed, 2 the input or the command is wrong.
+//! Exit codes: 0 done, 1 failed, 2 the input or the command is wrong, 130 interrupted.
 
 mod analyse;
 mod command_line;
 mod console;
 mod exit_code;
+mod interrupt;
 mod render;
 mod replicate;
 mod sit;
@@ -36,7 +37,7 @@ fn run(command: Command, progress: Progress) -> anyhow::Result<ExitCode> {
     match command {
         Command::Check(arguments) => return sit::check(&arguments),
         Command::Render(arguments) => render::set(&arguments, progress)?,
-        Command::Image(arguments) => render::image(&arguments)?,
+        Command::Image(arguments) => render::image(&arguments, progress)?,
         Command::Figures(arguments) => render::figures(&arguments)?,
         Command::Run(arguments) => sit::run(&arguments)?,
         Command::Simulate(arguments) => sit::simulate(&arguments, progress)?,

@@ -1,10 +1,14 @@
 //! `acuity render`, `image` and `figures`: from a protocol or a scene to pictures.
 
+use std::num::NonZeroUsize;
+use std::path::Path;
+
 use protocols::{Study, TreePlan};
-use renderer::ImageRequest;
+use renderer::{ImageRequest, Watch};
 
 use crate::command_line::{FiguresArguments, ImageArguments, RenderArguments};
 use crate::console::{self, Progress};
+use crate::interrupt::Interrupt;
 
 pub(crate) fn set(arguments: &RenderArguments, progress: Progress) -> anyhow::Result<()> {
     let study = Study::read(&arguments.protocol)?;
@@ -12,14 +16,26 @@ pub(crate) fn set(arguments: &RenderArguments, progress: Progress) -> anyhow::Re
         .out
         .clone()
         .unwrap_or_else(|| study.default_stimuli_dir());
-    let summary = progress.of("render", |told| {
-        renderer::render_set(&study, &out, arguments.threads, told)
+    make_set(&study, &out, arguments.threads, progress)
+}
+
+/// Makes a stimulus set and prints what it cost; Ctrl-C leaves a checkpoint.
+pub(crate) fn make_set(
+    study: &Study,
+    out: &Path,
+    threads: Option<NonZeroUsize>,
+    progress: Progress,
+) -> anyhow::Result<()> {
+    let interrupt = Interrupt::listen()?;
+    let summary = progress.of_rendering(|told| {
+        let watch = Watch::new(told, interrupt.flag());
+        renderer::render_set(study, out, threads, &watch)
     })?;
     console::print(summary)?;
     Ok(())
 }
 
-pub(crate) fn image(arguments: &ImageArguments) -> anyhow::Result<()> {
+pub(crate) fn image(arguments: &ImageArguments, progress: Progress) -> anyhow::Result<()> {
     let request = ImageRequest {
         rays_a: arguments.rays_a,
         rays_c1c2: arguments.rays_c1c2,
@@ -37,7 +53,11 @@ pub(crate) fn image(arguments: &ImageArguments) -> anyhow::Result<()> {
         },
         threads: arguments.threads,
     };
-    let summary = renderer::render_image(&arguments.scene, &request, &arguments.out)?;
+    let interrupt = Interrupt::listen()?;
+    let summary = progress.of_rendering(|told| {
+        let watch = Watch::new(told, interrupt.flag());
+        renderer::render_image(&arguments.scene, &request, &arguments.out, &watch)
+    })?;
     console::print(summary)?;
     Ok(())
 }

@@ -5,7 +5,9 @@ use protocols::{Observer, Study};
 
 use crate::analyse::write_report;
 use crate::command_line::ReplicateArguments;
-use crate::console::{self, Progress};
+use crate::console::Progress;
+use crate::render::make_set;
+use crate::sit::{Observers, rate_by_model};
 
 /// Render, simulate, report; prints the path of the report last.
 pub(crate) fn replicate(arguments: &ReplicateArguments, progress: Progress) -> anyhow::Result<()> {
@@ -13,20 +15,11 @@ pub(crate) fn replicate(arguments: &ReplicateArguments, progress: Progress) -> a
     let stimuli = study.default_stimuli_dir();
     let data = study.default_data_dir(Observer::Simulated);
 
-    let set = progress.of("render", |told| {
-        renderer::render_set(&study, &stimuli, None, told)
-    })?;
-    console::print(set)?;
-    let ratings = progress.of("simulate", |told| {
-        experiment::simulate(
-            &study,
-            &stimuli,
-            &data,
-            arguments.subjects,
-            arguments.seed,
-            told,
-        )
-    })?;
-    console::print(ratings)?;
+    make_set(&study, &stimuli, None, progress)?;
+    let observers = Observers {
+        number: arguments.subjects,
+        seed: arguments.seed,
+    };
+    rate_by_model(&study, (&stimuli, &data), observers, progress)?;
     write_report(&study, &data, None, Pilots::LeftOut)
 }

@@ -1,5 +1,6 @@
 //! `acuity check`, `run` and `simulate`: from stimuli to ratings.
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use experiment::RunOptions;
@@ -43,15 +44,29 @@ pub(crate) fn simulate(arguments: &SimulateArguments, progress: Progress) -> any
         .data
         .clone()
         .unwrap_or_else(|| study.default_data_dir(Observer::Simulated));
+    let observers = Observers {
+        number: arguments.subjects,
+        seed: arguments.seed,
+    };
+    rate_by_model(&study, (&stimuli, &data), observers, progress)
+}
+
+/// Which simulated observers take part.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Observers {
+    pub(crate) number: u32,
+    pub(crate) seed: u64,
+}
+
+/// Lets simulated observers rate a set into a data folder, and prints who did.
+pub(crate) fn rate_by_model(
+    study: &Study,
+    (stimuli, data): (&Path, &Path),
+    Observers { number, seed }: Observers,
+    progress: Progress,
+) -> anyhow::Result<()> {
     let summary = progress.of("simulate", |told| {
-        experiment::simulate(
-            &study,
-            &stimuli,
-            &data,
-            arguments.subjects,
-            arguments.seed,
-            told,
-        )
+        experiment::simulate(study, stimuli, data, number, seed, told)
     })?;
     console::print(summary)?;
     Ok(())

@@ -28,12 +28,30 @@ pub enum RendererError {
         /// What the encoder said.
         reason: String,
     },
+    /// The caller ended the work; what was done is kept.
+    #[error(
+        "interrupted after {rays} of {of_rays} rays; they are kept in \"{}\": give the same command again to go on",
+        checkpoint.display()
+    )]
+    Interrupted {
+        /// The file that holds the samples taken so far.
+        checkpoint: PathBuf,
+        /// How many there are.
+        rays: u64,
+        /// How many were asked for.
+        of_rays: u64,
+    },
 }
 
 impl RendererError {
     /// Whether the input or the command is wrong (exit code 2), rather than the system (exit code 1).
     pub fn is_input(&self) -> bool {
         matches!(self, Self::Input(_))
+    }
+
+    /// Whether the caller ended the work (exit code 130).
+    pub fn is_interruption(&self) -> bool {
+        matches!(self, Self::Interrupted { .. })
     }
 
     /// A refusal to write `path`.

@@ -12,11 +12,12 @@ use crate::scene::Scene;
 use crate::set_summary::SetSummary;
 use crate::stimulus_set::render_set_of;
 use crate::threads::on_threads;
+use crate::watch::Watch;
 
 /// Renders the stimulus set of a study into the folder `out`.
 ///
-/// `threads`: one for each core if not said; the files are the same with any number. `progress` is told how
-/// much is done, and of how much.
+/// `threads`: one for each core if not said; the files are the same with any number. `watch` is told how
+/// much is done, and may end the work: a checkpoint in `out` then holds what was traced.
 ///
 /// # Errors
 ///
@@ -26,19 +27,20 @@ pub fn render_set(
     study: &Study,
     out: &Path,
     threads: Option<NonZeroUsize>,
-    progress: &(dyn Fn(u64, u64) + Sync),
+    watch: &Watch<'_>,
 ) -> Result<SetSummary, RendererError> {
     let (scene, scene_sha256) = Scene::read_with_digest(&study.scene_path())?;
     let plan = &study.protocol.stimuli;
     on_threads(threads, out, || {
         let sampler = scene.sampler(plan.quadrature, plan.size_px);
-        render_set_of(&sampler, &scene_sha256, study, out, progress)
+        render_set_of(&sampler, &scene_sha256, study, out, watch)
     })
 }
 
 /// Renders one image of a scene to `out`: EXR or PNG, by its ending.
 ///
-/// The bytes are those of the same image in a stimulus set.
+/// The bytes are those of the same image in a stimulus set. `watch` may end the work: a checkpoint beside
+/// `out` then holds what was traced.
 ///
 /// # Errors
 ///
@@ -48,12 +50,13 @@ pub fn render_image(
     scene: &Path,
     request: &ImageRequest,
     out: &Path,
+    watch: &Watch<'_>,
 ) -> Result<ImageSummary, RendererError> {
     Format::of(out)?;
     request.check(scene)?;
     let (scene, scene_sha256) = Scene::read_with_digest(scene)?;
     on_threads(request.threads, out, || {
         let sampler = scene.sampler(request.quadrature, request.size_px);
-        render_image_of(&sampler, scene_sha256, request, out)
+        render_image_of(&sampler, scene_sha256, request, out, watch)
     })
 }

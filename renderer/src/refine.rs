@@ -15,6 +15,7 @@ use protocols::{Channel, PerChannel, RefinementDriver};
 use rayon::prelude::*;
 
 use crate::cell::Cell;
+use crate::checkpoint::TakenSample;
 use crate::priority::{ExpectedVariance, PriorityRule};
 use crate::sampler::{GridPoint, Sampler};
 use crate::screen_tree::{NewSample, PlacedNode, Reach, ScreenTree};
@@ -94,13 +95,29 @@ pub fn trace<S: Sampler>(
     plan: &TracePlan,
     progress: &(dyn Fn(u64, u64) + Sync),
 ) -> ScreenTree {
+    trace_from(sampler, plan, &[], (progress, &|| false))
+}
+
+/// Traces a screen tree of which the first samples are known: they are not taken again.
+///
+/// The tree ends early, after a whole batch, once `is_cancelled`.
+pub(crate) fn trace_from<S: Sampler>(
+    sampler: &S,
+    plan: &TracePlan,
+    taken: &[TakenSample],
+    (progress, is_cancelled): (&(dyn Fn(u64, u64) + Sync), &dyn Fn() -> bool),
+) -> ScreenTree {
     let rays = plan.rays();
     let rule = PriorityRule {
         min_depth: plan.min_depth,
         pixel_area: 1.0 / (f64::from(plan.size_px[0]) * f64::from(plan.size_px[1])),
     };
     let mut ray_tree = S::RayTree::default();
-    let first = Probe::new(plan, 0, Cell::ROOT).take(sampler, &mut ray_tree);
+    let first = Probe::new(plan, 0, Cell::ROOT);
+    let first = match taken.first() {
+        Some(taken) => first.recall(*taken),
+        None => first.take(sampler, &mut ray_tree),
+    };
     let mut tree = ScreenTree::new(&first, &plan.capacity(), rays);
     let mut waiting = Waiting::new();
     let wait = |waiting: &mut Waiting, candidate: Candidate| {
@@ -114,12 +131,15 @@ pub fn trace<S: Sampler>(
         expected: ExpectedVariance::default(),
     };
     wait(&mut waiting, root);
-    while tree.len() < rays {
+    while tree.len() < rays && !is_cancelled() {
         let batch = next_batch(&mut waiting, rays - tree.len(), until_next_look(tree.len()));
         if batch.is_empty() {
             break;
         }
-        for (candidate, new) in batch.iter().zip(sample_batch(sampler, plan, &tree, &batch)) {
+        for (candidate, new) in batch
+            .iter()
+            .zip(sample_batch(sampler, plan, &tree, &batch, taken))
+        {
             let children = tree.split(candidate.node, &new);
             let spread = spread(plan, &tree, children);
             let expected = candidate.expected.of_halves(spread);
@@ -183,20 +203,33 @@ impl Probe {
             values: PerChannel::from_fn(shade),
         }
     }
+
+    /// The sample as it was taken before.
+    fn recall(&self, taken: TakenSample) -> NewSample {
+        NewSample {
+            point: self.point,
+            values: PerChannel::from_fn(|c| self.is_shaded[c].then_some(taken[c])),
+        }
+    }
 }
 
-/// The new samples of a batch, in its order, taken on all threads.
+/// The new samples of a batch, in its order, taken on all threads or recalled.
 fn sample_batch<S: Sampler>(
     sampler: &S,
     plan: &TracePlan,
     tree: &ScreenTree,
     batch: &[Candidate],
+    taken: &[TakenSample],
 ) -> Vec<NewSample> {
     let first = tree.len();
     let take = |ray_tree: &mut S::RayTree, (place, candidate): (usize, &Candidate)| {
         let PlacedNode { sample, cell, .. } = candidate.node;
         let free_half = cell.halves()[1 - cell.half_of(tree.point(sample))];
-        Probe::new(plan, first + place, free_half).take(sampler, ray_tree)
+        let probe = Probe::new(plan, first + place, free_half);
+        match taken.get(first + place) {
+            Some(taken) => probe.recall(*taken),
+            None => probe.take(sampler, ray_tree),
+        }
     };
     batch
         .par_iter()

@@ -8,15 +8,16 @@ use rayon::prelude::*;
 
 use crate::account::RayAccount;
 use crate::channel_image::ChannelImage;
+use crate::checkpoint::Checkpoint;
 use crate::error::RendererError;
 use crate::image_record::ImageRecord;
 use crate::image_request::ImageRequest;
 use crate::opponent_exr;
 use crate::reconstruct::reconstruct;
-use crate::refine::trace;
 use crate::remark;
 use crate::sampler::Sampler;
 use crate::srgb_png::SrgbEncoder;
+use crate::watch::Watch;
 
 /// What was made and what it cost.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -76,7 +77,8 @@ impl Format {
 
 /// Renders one image of anything that can be sampled to `out`: EXR or PNG, by its ending.
 ///
-/// Runs in the current rayon pool; `scene_sha256` only goes into the record beside the pixels.
+/// Runs in the current rayon pool; `scene_sha256` goes into the record beside the pixels, and into the
+/// checkpoint that is left beside `out` if `watch` ends the work.
 ///
 /// # Errors
 ///
@@ -86,9 +88,12 @@ pub fn render_image_of(
     scene_sha256: Sha256Digest,
     request: &ImageRequest,
     out: &Path,
+    watch: &Watch<'_>,
 ) -> Result<ImageSummary, RendererError> {
     let format = Format::of(out)?;
-    let tree = trace(sampler, &request.trace_plan(), &|_, _| ());
+    let plan = request.trace_plan();
+    let checkpoint = Checkpoint::beside(out, &plan, request.quadrature, &scene_sha256);
+    let tree = checkpoint.trace(sampler, &plan, watch)?;
     let images: Vec<(ChannelImage, u64)> = Channel::ALL
         .into_par_iter()
         .filter_map(|channel| tree.leaves(channel, request.reach(channel)))
@@ -108,6 +113,7 @@ pub fn render_image_of(
     };
     write_atomically(out, &bytes, Access::Ordinary)
         .map_err(|error| RendererError::writing(out, error))?;
+    checkpoint.remove()?;
     Ok(ImageSummary {
         path: out.to_owned(),
         sha256: Sha256Digest::of(&bytes),

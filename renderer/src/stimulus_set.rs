@@ -17,16 +17,18 @@ use protocols::{
 use rayon::prelude::*;
 
 use crate::channel_image::ChannelImage;
+use crate::checkpoint::Checkpoint;
 use crate::error::RendererError;
 use crate::image_request::ImageRequest;
 use crate::opponent_exr;
 use crate::reconstruct::reconstruct;
-use crate::refine::{TracePlan, trace};
+use crate::refine::TracePlan;
 use crate::remark;
 use crate::sampler::Sampler;
 use crate::screen_tree::{Reach, ScreenTree};
 use crate::set_summary::{SetSummary, StimulusSummary};
 use crate::srgb_png::SrgbEncoder;
+use crate::watch::{Stage, Watch};
 
 const COLOR_SPACE: &str = "EXR: opponent channels A, C1, C2 of Meyer & Liu (1992), Eq. 2 on CIE 1931 2-degree \
     tristimulus values, linear, display white D65 at (1.0001, -0.0293, 0.5537). PNG: sRGB (IEC 61966-2-1), 8 bits, \
@@ -37,8 +39,8 @@ type ImagesByRays = BTreeMap<RayCount, ChannelImage>;
 
 /// Renders the stimulus set of a study into the folder `out`, from anything that can be sampled.
 ///
-/// Runs in the current rayon pool; the files are the same in any. `progress` is told how much is done, and
-/// of how much.
+/// Runs in the current rayon pool; the files are the same in any. `watch` is told how much is done, and may
+/// end the work: a checkpoint in `out` then holds what was traced.
 ///
 /// # Errors
 ///
@@ -48,31 +50,39 @@ pub fn render_set_of(
     scene_sha256: &Sha256Digest,
     study: &Study,
     out: &Path,
-    progress: &(dyn Fn(u64, u64) + Sync),
+    watch: &Watch<'_>,
 ) -> Result<SetSummary, RendererError> {
     let plan = &study.protocol.stimuli;
     let stimuli = plan.stimuli();
-    let traced = u64::from(plan.most_rays().get());
-    // An image takes about as long to write as this many rays to trace.
-    let rays_per_image = 5000;
-    let total = traced + rays_per_image * stimuli.len() as u64;
+    let trace_plan = trace_plan(plan);
+    let checkpoint = Checkpoint::beside(
+        &out.join("trace"),
+        &trace_plan,
+        plan.quadrature,
+        scene_sha256,
+    );
+    let tree = checkpoint.trace(sampler, &trace_plan, watch)?;
     remove_manifest(out)?;
-    let tree = trace(sampler, &trace_plan(plan), &|done, _| progress(done, total));
     let images = channel_images(&tree, plan);
     let encoder = SrgbEncoder::new();
     let images_done = AtomicU64::new(0);
     let write = |stimulus: &Stimulus| {
+        if watch.is_cancelled() {
+            return Err(checkpoint.interruption(&tree, &trace_plan));
+        }
         let request = ImageRequest::from_plan(plan, stimulus.rays_a, stimulus.rays_c1c2);
         let channels = recombine(&images, &request, out)?;
         let written = write_stimulus(stimulus, channels, (&request, scene_sha256), &encoder, out)?;
         let done = images_done.fetch_add(1, Ordering::Relaxed) + 1;
-        progress(traced + rays_per_image * done, total);
+        watch.tell(Stage::Images, done, stimuli.len() as u64);
         Ok(written)
     };
     let written: Result<Vec<ManifestStimulus>, RendererError> =
         stimuli.par_iter().map(write).collect();
+    checkpoint.keep_if_cancelled(&tree, &trace_plan, watch)?;
     let manifest = manifest(study, scene_sha256.clone(), written?);
     write_manifest(&manifest, out)?;
+    checkpoint.remove()?;
     Ok(SetSummary {
         folder: out.to_owned(),
         account: tree.account(),

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use protocols::{PerChannel, RayCount};
-use renderer::{ImageRequest, read_opponent_exr, render_image_of};
+use renderer::{ImageRequest, Watch, read_opponent_exr, render_image_of};
 
 use crate::analytic::disc_and_checks;
 use crate::small_study::{image_alone, no_scene, request, small_study};
@@ -107,7 +107,14 @@ fn an_ending_that_is_no_format_is_refused_and_nothing_is_written() {
     let request = request(&small_study(), 1000, 1000);
     for name in ["x.jpg", "x", "exr"] {
         let path = folder.path().join(name);
-        let error = render_image_of(&disc_and_checks(), no_scene(), &request, &path).unwrap_err();
+        let error = render_image_of(
+            &disc_and_checks(),
+            no_scene(),
+            &request,
+            &path,
+            &Watch::UNWATCHED,
+        )
+        .unwrap_err();
         assert!(
             error.is_input() && error.to_string().contains(".exr"),
             "{error}"
@@ -182,7 +189,14 @@ fn stop_depths_make_a_coarser_image_from_fewer_rectangles() {
         },
         ..request(&small_study(), 4000, 4000)
     };
-    let summary = render_image_of(&disc_and_checks(), no_scene(), &stopped, &path).unwrap();
+    let summary = render_image_of(
+        &disc_and_checks(),
+        no_scene(),
+        &stopped,
+        &path,
+        &Watch::UNWATCHED,
+    )
+    .unwrap();
     // 2⁶ and 2⁴ cells, all above the minimum depth of 8.
     assert_eq!(
         summary.rectangles,

@@ -8,6 +8,7 @@
 mod analytic;
 mod estimates;
 mod files;
+mod interruption;
 mod prefix;
 mod reconstruction;
 mod scene;

@@ -5,12 +5,12 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 
 use protocols::{Manifest, RayCount, Study};
-use renderer::{ImageRequest, RendererError, draw_figures, render_image, render_set};
+use renderer::{ImageRequest, RendererError, Watch, draw_figures, render_image, render_set};
 
 use crate::small_study::{request, small_study};
 
 fn render(study: &Study, out: &Path, threads: usize) {
-    render_set(study, out, NonZeroUsize::new(threads), &|_, _| ()).unwrap();
+    render_set(study, out, NonZeroUsize::new(threads), &Watch::UNWATCHED).unwrap();
 }
 
 fn manifest_text(folder: &Path) -> String {
@@ -35,7 +35,7 @@ fn one_and_two_threads_make_the_same_set_and_an_image_alone_is_that_of_the_set()
         threads: NonZeroUsize::new(2),
         ..request(&study, 3210, 4000)
     };
-    let summary = render_image(&study.scene_path(), &request, &alone).unwrap();
+    let summary = render_image(&study.scene_path(), &request, &alone, &Watch::UNWATCHED).unwrap();
     assert!(
         fs::read(&alone).unwrap() == fs::read(folders[0].path().join("a3210_c004k.exr")).unwrap()
     );
@@ -48,7 +48,8 @@ fn a_scene_or_a_request_that_cannot_be_is_refused_before_anything_is_written() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("x.exr");
     let refused = |scene: &Path, request: &ImageRequest, what: &str| {
-        let error: RendererError = render_image(scene, request, &out).unwrap_err();
+        let error: RendererError =
+            render_image(scene, request, &out, &Watch::UNWATCHED).unwrap_err();
         assert!(
             error.is_input() && error.to_string().contains(what),
             "{error}"
@@ -71,7 +72,7 @@ fn a_scene_or_a_request_that_cannot_be_is_refused_before_anything_is_written() {
     let mut astray = study;
     astray.protocol.stimuli.scene = "no-such-scene.toml".to_owned();
     let set = folder.path().join("set");
-    let error = render_set(&astray, &set, None, &|_, _| ()).unwrap_err();
+    let error = render_set(&astray, &set, None, &Watch::UNWATCHED).unwrap_err();
     assert!(error.is_input() && !set.exists(), "{error}");
 }
 

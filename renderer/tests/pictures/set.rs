@@ -161,7 +161,7 @@ fn a_set_that_cannot_be_written_leaves_no_manifest() {
         &crate::small_study::no_scene(),
         &study,
         folder.path(),
-        &|_, _| (),
+        &renderer::Watch::UNWATCHED,
     );
     let error = failed.unwrap_err();
     assert!(error.to_string().contains("a001k_c001k.exr"), "{error}");

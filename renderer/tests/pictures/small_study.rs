@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use protocols::{PerChannel, Protocol, RayCount, Sha256Digest, Study};
-use renderer::{ImageRequest, SetSummary, render_image_of, render_set_of};
+use renderer::{ImageRequest, SetSummary, Watch, render_image_of, render_set_of};
 
 use crate::analytic::disc_and_checks;
 
@@ -38,7 +38,15 @@ pub(crate) fn render(study: &Study, out: &Path, threads: usize) -> SetSummary {
         .num_threads(threads)
         .build()
         .unwrap();
-    let render = || render_set_of(&disc_and_checks(), &no_scene(), study, out, &|_, _| ());
+    let render = || {
+        render_set_of(
+            &disc_and_checks(),
+            &no_scene(),
+            study,
+            out,
+            &Watch::UNWATCHED,
+        )
+    };
     pool.install(render).unwrap()
 }
 
@@ -54,6 +62,13 @@ pub(crate) fn request(study: &Study, rays_a: u32, rays_c1c2: u32) -> ImageReques
 pub(crate) fn image_alone(request: &ImageRequest, name: &str) -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
     let path: PathBuf = folder.path().join(name);
-    render_image_of(&disc_and_checks(), no_scene(), request, &path).unwrap();
+    render_image_of(
+        &disc_and_checks(),
+        no_scene(),
+        request,
+        &path,
+        &Watch::UNWATCHED,
+    )
+    .unwrap();
     std::fs::read(path).unwrap()
 }
