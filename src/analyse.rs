@@ -42,6 +42,8 @@ pub(crate) fn anova(arguments: &AnovaArguments) -> anyhow::Result<()> {
         within: arguments.within.clone(),
         between: arguments.between.clone(),
         observed: arguments.observed.clone(),
+        sums_of_squares: arguments.sums_of_squares.into(),
+        missing: arguments.missing.into(),
     };
     let table = analysis::anova_of_table(&arguments.table, &design)?;
     console::print(if arguments.json {

@@ -3,8 +3,10 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
-use protocols::{Observer, Quadrature, RayCount, RefinementDriver, Study, SubjectId};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use protocols::{
+    Missing, Observer, Quadrature, RayCount, RefinementDriver, Study, SubjectId, SumsOfSquares,
+};
 
 /// A psychophysics experiment harness: scene, rays, tree, channel images, stimuli, session, ratings, ANOVA,
 /// report.
@@ -211,9 +213,53 @@ pub(crate) struct AnovaArguments {
     /// Factors that were observed and not manipulated, for generalized eta squared.
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',')]
     pub(crate) observed: Vec<String>,
+    /// Type of the sums of squares, for unbalanced groups.
+    #[arg(long = "type", value_name = "TYPE", default_value = "3")]
+    pub(crate) sums_of_squares: TypeArgument,
+    /// What is done with a subject of whom a rating is missing.
+    #[arg(long, value_name = "WHAT", default_value = "drop")]
+    pub(crate) missing: MissingArgument,
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// The type of the sums of squares.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum TypeArgument {
+    /// Adjusted for terms that do not contain the effect.
+    #[value(name = "2", alias = "II")]
+    Two,
+    /// Adjusted for all other terms.
+    #[value(name = "3", alias = "III")]
+    Three,
+}
+
+impl From<TypeArgument> for SumsOfSquares {
+    fn from(argument: TypeArgument) -> Self {
+        match argument {
+            TypeArgument::Two => Self::TypeTwo,
+            TypeArgument::Three => Self::TypeThree,
+        }
+    }
+}
+
+/// What is done with a subject of whom a rating is missing.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum MissingArgument {
+    /// The subject is left out, by name.
+    Drop,
+    /// The analysis stops and names the subjects.
+    Fail,
+}
+
+impl From<MissingArgument> for Missing {
+    fn from(argument: MissingArgument) -> Self {
+        match argument {
+            MissingArgument::Drop => Self::Drop,
+            MissingArgument::Fail => Self::Fail,
+        }
+    }
 }
 
 #[derive(Debug, Args)]

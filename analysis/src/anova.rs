@@ -1,52 +1,60 @@
 //! The analysis of variance of any number of within and between factors, as one multivariate linear model.
 //!
 //! For each set of within factors, orthonormal contrasts turn the subjects × cells matrix into contrast
-//! scores; their residuals about the group means are the error of every effect of that set, and type III
-//! hypotheses on the unweighted group means give the effects. There is no case for two factors, or one.
+//! scores; their residuals about the group means are the error of every effect of that set, and hypotheses
+//! on the group means (`between_model`) give the effects. There is no case for two factors, or one.
 //!
 //! Sources: Rencher & Christensen (2012), *Methods of Multivariate Analysis*, section 6.10, for the model;
 //! Olejnik & Algina (2003) and Bakeman (2005) for generalized eta squared.
 
 use nalgebra::DMatrix;
+use protocols::SumsOfSquares;
 
 use crate::anova_table::{AnovaTable, EffectRow};
+use crate::between_model::{BetweenModel, BetweenTerm, level_counts};
 use crate::cell_matrix::{CellMatrix, Factor};
 use crate::contrasts::{effect_contrasts, factor_sets};
-use crate::sphericity::{Mauchly, Sphericity, held_to_range};
+use crate::sphericity::{Epsilons, Mauchly, Sphericity, held_to_range};
 use crate::tail::{f_tail, ln_f_tail};
 
-/// The type III analysis of variance of `cells`; `observed` names the factors that were measured and not
+/// The analysis of variance of `cells`; `observed` names the factors that were measured and not
 /// manipulated.
 ///
 /// With *M* the contrasts of a set of within factors (cells × *p*), *Z* = *Y M*, *n* subjects in *g* groups:
 ///
 /// ```text
 /// E   = sum over groups of (Z - mean Z)' (Z - mean Z)        nu = n - g
-/// H_t = L' (C' D C)^-1 L,   L = C' (group means of Z)        C: contrasts of the between term t
-/// F   = (tr H / (p df_t)) / (tr E / (p nu))                  D: diagonal of 1 / group size
+/// H_t = L' L,   L = Q_t' sqrt(D) (group means of Z)          D: group sizes; Q_t: directions of the term t
+/// F   = (tr H / (p df_t)) / (tr E / (p nu))
 /// ```
 ///
 /// which for sum-to-zero coded between factors is the residual sum of squares without the term, less that
-/// with it.
-pub fn anova(cells: &CellMatrix, observed: &[String]) -> AnovaTable {
-    let model = Model::new(cells);
+/// with it, beside the terms that the type of the sums of squares adjusts for.
+pub fn anova(cells: &CellMatrix, observed: &[String], kind: SumsOfSquares) -> AnovaTable {
+    let model = Model::new(cells, kind);
     let mut effects = Vec::new();
     let mut warnings = cells.warnings.clone();
     let mut error_total = 0.0;
+    let mut subjects_error = None;
     for held in factor_sets(cells.within.len()) {
         let stratum = model.stratum(held);
         error_total += stratum.ss_error;
-        for term in factor_sets(cells.between.len()) {
-            if stratum.holds_factors() || term.contains(&true) {
-                effects.push(stratum.effect(&term, &mut warnings));
+        let between_error = *subjects_error.get_or_insert((stratum.ss_error, stratum.df_error));
+        for term in &model.between.terms {
+            if stratum.holds_factors() || term.holds.contains(&true) {
+                let mut row = stratum.effect(term, &mut warnings);
+                row.omega2 = stratum.omega_squared(&row, between_error);
+                effects.push(row);
             }
         }
     }
     add_generalized_eta(&mut effects, error_total, observed);
     AnovaTable {
         n_subjects: cells.subjects.len(),
+        sums_of_squares: kind,
         effects,
         dropped_subjects: cells.dropped_subjects.clone(),
+        n_averaged_cells: cells.n_averaged_cells,
         warnings,
     }
 }
@@ -57,18 +65,20 @@ struct Model<'a> {
     /// Scores less one constant, so that an offset costs no digits.
     centred: DMatrix<f64>,
     group_sizes: Vec<usize>,
+    between: BetweenModel,
     /// Sums of squares up to this are rounding noise.
     zero: f64,
 }
 
 impl<'a> Model<'a> {
-    fn new(cells: &'a CellMatrix) -> Self {
+    fn new(cells: &'a CellMatrix, kind: SumsOfSquares) -> Self {
         let centred = cells.scores.add_scalar(-cells.scores.mean());
         let noise = 64.0 * f64::EPSILON * cells.scores.amax();
         Self {
             cells,
             centred,
             group_sizes: cells.group_sizes(),
+            between: BetweenModel::new(cells, kind),
             zero: cells.scores.len() as f64 * noise * noise,
         }
     }
@@ -127,62 +137,48 @@ impl Stratum<'_> {
     }
 
     /// The effect of the between factors `term` on this stratum's contrasts.
-    fn effect(&self, term: &[bool], warnings: &mut Vec<String>) -> EffectRow {
-        let (ss_effect, df_term) = self.hypothesis(term);
-        let name = self.name(term);
-        let df_num = df_term * self.n_contrasts;
-        let df_den = self.df_error * self.n_contrasts;
-        let f = (self.ss_error > 0.0)
-            .then(|| (ss_effect / df_num as f64) / (self.ss_error / df_den as f64));
-        warn_of_f(&name, ss_effect, f, warnings);
-        let p_with =
-            |epsilon: f64| f.map(|f| f_tail(f, epsilon * df_num as f64, epsilon * df_den as f64));
-        let ln_p = f.map(|f| ln_f_tail(f, df_num as f64, df_den as f64));
-        if let Some(ln_p) = ln_p.filter(|ln_p| ln_p.exp() == 0.0) {
-            warnings.push(format!(
-                "{name}: p is below 5e-324, the smallest number that can be written; its natural logarithm is {ln_p:.4}"
-            ));
-        }
-        let total = ss_effect + self.ss_error;
-        let mut row = EffectRow {
-            effect: name,
-            df_num,
-            df_den,
-            ss_effect,
-            ss_error: self.ss_error,
-            f,
-            p: p_with(1.0),
-            ln_p,
-            gg_epsilon: None,
-            p_gg: None,
-            hf_epsilon: None,
-            p_hf: None,
-            pes: (total > 0.0).then(|| ss_effect / total),
-            ges: None,
-            mauchly_w: None,
-            mauchly_p: None,
-        };
-        self.add_sphericity(&mut row, p_with, warnings);
+    fn effect(&self, term: &BetweenTerm, warnings: &mut Vec<String>) -> EffectRow {
+        let explained = self.model.between.explained(term, &self.means);
+        let ss_effect = explained.norm_squared();
+        let is_noise = ss_effect <= self.model.zero;
+        let ss_effect = if is_noise { 0.0 } else { ss_effect };
+        let mut row = EffectRow::new(
+            self.name(&term.holds),
+            [
+                term.directions.ncols() * self.n_contrasts,
+                self.df_error * self.n_contrasts,
+            ],
+            [ss_effect, self.ss_error],
+        );
+        add_test(&mut row, warnings);
+        self.add_sphericity(&mut row, warnings);
         row
     }
 
-    /// The type III sum of squares of a between term and its degrees of freedom on each contrast.
-    fn hypothesis(&self, term: &[bool]) -> (f64, usize) {
-        let contrasts = effect_contrasts(&level_counts(&self.model.cells.between), term);
-        let tested = contrasts.tr_mul(&self.means);
-        let mut weighted = contrasts.clone();
-        for (mut row, &size) in weighted.row_iter_mut().zip(&self.model.group_sizes) {
-            row /= size as f64;
-        }
-        let covariance = contrasts.tr_mul(&weighted);
-        let sum_of_squares = covariance
-            .cholesky()
-            .map_or(f64::NAN, |factor| factor.solve(&tested).dot(&tested));
-        let is_noise = sum_of_squares <= self.model.zero;
-        (
-            if is_noise { 0.0 } else { sum_of_squares },
-            contrasts.ncols(),
-        )
+    /// Partial omega squared, never below 0; `None` without variance. `between_error` is the sum of squares
+    /// and the degrees of freedom of the subjects.
+    ///
+    /// ```text
+    /// within factors:   df (MS - MSE) / (SS + [within effect] SSE + SS_subjects + MS_subjects)
+    /// none in the design: df (MS - MSE) / (SS + (n - df) MSE)
+    /// ```
+    ///
+    /// Source: Olejnik & Algina (2003), *Psychol. Methods* 8, 434–447, as JASP and R's effectsize have it.
+    fn omega_squared(&self, row: &EffectRow, between_error: (f64, usize)) -> Option<f64> {
+        let (df, mse) = (row.df_num as f64, row.ss_error / row.df_den as f64);
+        let (ss_subjects, df_subjects) = between_error;
+        let total = if self.model.cells.within.is_empty() {
+            let n = self.model.cells.subjects.len() as f64;
+            row.ss_effect + (n - df) * mse
+        } else {
+            let own = if self.holds_factors() {
+                row.ss_error
+            } else {
+                0.0
+            };
+            row.ss_effect + own + ss_subjects + ss_subjects / df_subjects as f64
+        };
+        (total > 0.0).then(|| ((row.ss_effect - df * mse) / total).max(0.0))
     }
 
     fn name(&self, term: &[bool]) -> String {
@@ -198,41 +194,25 @@ impl Stratum<'_> {
         names.join(":")
     }
 
-    fn add_sphericity(
-        &self,
-        row: &mut EffectRow,
-        p_with: impl Fn(f64) -> Option<f64>,
-        warnings: &mut Vec<String>,
-    ) {
+    fn add_sphericity(&self, row: &mut EffectRow, warnings: &mut Vec<String>) {
         let Some(sphericity) = &self.sphericity else {
-            if self.holds_factors() {
+            self.say_why_no_sphericity(row, warnings);
+            return;
+        };
+        if let Some(epsilons) = &sphericity.epsilons {
+            self.add_epsilons(row, epsilons);
+            if epsilons.huynh_feldt.is_none() {
                 warnings.push(format!(
-                    "{}: two levels are always spherical: epsilon is 1 and Mauchly's test does not exist",
-                    row.effect
-                ));
-                (row.gg_epsilon, row.hf_epsilon) = (Some(1.0), Some(1.0));
-                (row.p_gg, row.p_hf) = (row.p, row.p);
-            } else {
-                warnings.push(format!(
-                    "{}: sphericity is no matter between subjects: no epsilon, no Mauchly's test",
+                    "{}: the Huynh-Feldt epsilon is 0/0 with so few subjects, and Chi-Muller's with it; the lower bound exists",
                     row.effect
                 ));
             }
-            return;
-        };
-        row.gg_epsilon = sphericity.gg_epsilon;
-        row.p_gg = sphericity.gg_epsilon.and_then(&p_with);
-        row.hf_epsilon = sphericity.hf_epsilon;
-        row.p_hf = (sphericity.hf_epsilon)
-            .and_then(|epsilon| p_with(held_to_range(epsilon, self.n_contrasts)));
-        if sphericity.gg_epsilon.is_some() && sphericity.hf_epsilon.is_none() {
-            warnings.push(format!(
-                "{}: the Huynh-Feldt epsilon is 0/0 with so few subjects",
-                row.effect
-            ));
         }
         match sphericity.mauchly {
-            Mauchly::Tested { w, p } => (row.mauchly_w, row.mauchly_p) = (Some(w), Some(p)),
+            Mauchly::Tested { w, p, p_exact } => {
+                (row.mauchly_w, row.mauchly_p) = (Some(w), Some(p));
+                row.mauchly_p_exact = Some(p_exact);
+            }
             Mauchly::Singular { rank } => warnings.push(format!(
                 "{}: Mauchly's test does not exist, because the error matrix of {} contrasts has rank {rank} \
                  ({} error degrees of freedom); the epsilons need no inverse and do exist",
@@ -244,6 +224,68 @@ impl Stratum<'_> {
             )),
         }
     }
+
+    fn add_epsilons(&self, row: &mut EffectRow, epsilons: &Epsilons) {
+        let p_held = |epsilon: f64| p_with(row, held_to_range(epsilon, self.n_contrasts));
+        let p_gg = p_held(epsilons.greenhouse_geisser);
+        let p_hf = epsilons.huynh_feldt.and_then(p_held);
+        let p_hf_classic = epsilons.huynh_feldt_classic.and_then(p_held);
+        let p_cm = epsilons.chi_muller.and_then(p_held);
+        let p_lb = p_held(epsilons.lower_bound);
+        (row.gg_epsilon, row.p_gg) = (Some(epsilons.greenhouse_geisser), p_gg);
+        (row.hf_epsilon, row.p_hf) = (epsilons.huynh_feldt, p_hf);
+        (row.hf_epsilon_classic, row.p_hf_classic) = (epsilons.huynh_feldt_classic, p_hf_classic);
+        (row.cm_epsilon, row.p_cm) = (epsilons.chi_muller, p_cm);
+        (row.lb_epsilon, row.p_lb) = (Some(epsilons.lower_bound), p_lb);
+    }
+
+    fn say_why_no_sphericity(&self, row: &mut EffectRow, warnings: &mut Vec<String>) {
+        if !self.holds_factors() {
+            warnings.push(format!(
+                "{}: sphericity is no matter between subjects: no epsilon, no Mauchly's test",
+                row.effect
+            ));
+            return;
+        }
+        warnings.push(format!(
+            "{}: two levels are always spherical: epsilon is 1 and Mauchly's test does not exist",
+            row.effect
+        ));
+        for epsilon in [
+            &mut row.gg_epsilon,
+            &mut row.hf_epsilon,
+            &mut row.hf_epsilon_classic,
+            &mut row.cm_epsilon,
+            &mut row.lb_epsilon,
+        ] {
+            *epsilon = Some(1.0);
+        }
+        (row.p_gg, row.p_hf, row.p_hf_classic) = (row.p, row.p, row.p);
+        (row.p_cm, row.p_lb) = (row.p, row.p);
+    }
+}
+
+/// F, p and partial eta squared.
+fn add_test(row: &mut EffectRow, warnings: &mut Vec<String>) {
+    let (df_num, df_den) = (row.df_num as f64, row.df_den as f64);
+    row.f = (row.ss_error > 0.0).then(|| (row.ss_effect / df_num) / (row.ss_error / df_den));
+    warn_of_f(&row.effect, row.ss_effect, row.f, warnings);
+    row.p = p_with(row, 1.0);
+    row.ln_p = row.f.map(|f| ln_f_tail(f, df_num, df_den));
+    if let Some(ln_p) = row.ln_p.filter(|ln_p| ln_p.exp() == 0.0) {
+        warnings.push(format!(
+            "{}: p is below 5e-324, the smallest number that can be written; its natural logarithm is {ln_p:.4}",
+            row.effect
+        ));
+    }
+    let total = row.ss_effect + row.ss_error;
+    row.pes = (total > 0.0).then(|| row.ss_effect / total);
+}
+
+/// The p value of an effect with both degrees of freedom multiplied by `epsilon`.
+fn p_with(row: &EffectRow, epsilon: f64) -> Option<f64> {
+    let (df_num, df_den) = (row.df_num as f64, row.df_den as f64);
+    row.f.map(|f| f_tail(f, epsilon * df_num, epsilon * df_den))
 }
 
 fn warn_of_f(name: &str, ss_effect: f64, f: Option<f64>, warnings: &mut Vec<String>) {
@@ -257,10 +299,6 @@ fn warn_of_f(name: &str, ss_effect: f64, f: Option<f64>, warnings: &mut Vec<Stri
     } else {
         format!("{name}: effect and error sums of squares are zero, so F is 0/0 and not defined")
     });
-}
-
-fn level_counts(factors: &[Factor]) -> Vec<usize> {
-    factors.iter().map(|factor| factor.levels.len()).collect()
 }
 
 /// Generalized eta squared: every error stratum once, and the effects that hold an observed factor.

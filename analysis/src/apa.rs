@@ -63,6 +63,10 @@ impl LeadingTest {
             Correction::None => (Some(1.0), row.p),
             Correction::GreenhouseGeisser => (row.gg_epsilon, row.p_gg),
             Correction::HuynhFeldt => (row.hf_epsilon.map(|epsilon| epsilon.min(1.0)), row.p_hf),
+            Correction::ChiMuller => {
+                let held = |epsilon: f64| Some(epsilon.max(row.lb_epsilon?).min(1.0));
+                (row.cm_epsilon.and_then(held), row.p_cm)
+            }
         };
         if row.gg_epsilon.is_none() {
             // Between subjects there is nothing to correct.

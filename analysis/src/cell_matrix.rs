@@ -6,8 +6,10 @@
 //!
 //! Not here: contrasts and sums of squares (`anova`).
 
+use std::path::Path;
+
 use nalgebra::DMatrix;
-use protocols::InputError;
+use protocols::{InputError, Missing};
 
 use crate::Observations;
 
@@ -35,6 +37,8 @@ pub struct CellMatrix {
     pub scores: DMatrix<f64>,
     /// Subjects left out because a cell is missing, in natural order.
     pub dropped_subjects: Vec<String>,
+    /// How many cells of these subjects were rated more than once, and averaged.
+    pub n_averaged_cells: usize,
     /// What the reader of a result must know.
     pub warnings: Vec<String>,
 }
@@ -69,6 +73,7 @@ impl CellMatrix {
         let mut matrix = Self {
             scores: DMatrix::from_row_slice(subjects.len(), coded.n_cells, &means),
             groups: kept_groups,
+            n_averaged_cells: n_averaged,
             warnings: warnings(&dropped_subjects, n_averaged),
             between: coded.between,
             within: coded.within,
@@ -78,6 +83,23 @@ impl CellMatrix {
         matrix.forget_empty_levels();
         matrix.check_groups(observations)?;
         Ok(matrix)
+    }
+
+    /// Sorts observations into cells, and refuses them where a subject would be left out though `missing`
+    /// forbids it.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::new`], and subjects with missing ratings under [`Missing::Fail`].
+    pub fn with_missing(observations: &Observations, missing: Missing) -> Result<Self, InputError> {
+        let cells = Self::new(observations)?;
+        match missing {
+            Missing::Fail if !cells.dropped_subjects.is_empty() => Err(missing_ratings(
+                observations.source(),
+                &cells.dropped_subjects,
+            )),
+            _ => Ok(cells),
+        }
     }
 
     /// How many groups the between factors make.
@@ -319,6 +341,16 @@ impl<'a> Coded<'a> {
         )
         .remedy("leave a level or a factor out")
     }
+}
+
+/// Says that `subjects` may not be left out.
+pub(crate) fn missing_ratings(source: &Path, subjects: &[String]) -> InputError {
+    InputError::new(
+        source,
+        format!("ratings missing of: {}", subjects.join(", ")),
+        "a rating in every cell of every subject, because missing = \"fail\"",
+    )
+    .remedy("complete these subjects, or say missing = \"drop\" to leave them out")
 }
 
 fn warnings(dropped: &[String], n_averaged: usize) -> Vec<String> {

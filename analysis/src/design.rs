@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use protocols::InputError;
+use protocols::{InputError, Missing, SumsOfSquares};
 
 /// The roles of a table's columns in an analysis of variance.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -17,6 +17,10 @@ pub struct Design {
     pub between: Vec<String>,
     /// The factors that were observed and not manipulated; they only change generalized eta squared.
     pub observed: Vec<String>,
+    /// The type of the sums of squares.
+    pub sums_of_squares: SumsOfSquares,
+    /// What is done with a subject of whom a rating is missing.
+    pub missing: Missing,
 }
 
 impl Design {

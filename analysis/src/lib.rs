@@ -2,7 +2,7 @@
 //!
 //! A table of ratings becomes [`Observations`], those become a [`CellMatrix`] (subjects × cells), that
 //! becomes an [`AnovaTable`] by the multivariate linear model: orthonormal contrasts for each set of within
-//! factors, error and hypothesis sums of squares and products, type III. Any number of within and between
+//! factors, error and hypothesis sums of squares and products, type III or II. Any number of within and between
 //! factors goes the same way.
 //!
 //! Conventions of this crate: a factor's levels stand in natural order (10K before 100K); effects are named
@@ -14,6 +14,7 @@
 mod anova;
 mod anova_table;
 mod apa;
+mod between_model;
 mod cell_matrix;
 mod contrasts;
 mod data_sections;
@@ -22,6 +23,7 @@ mod error;
 mod figure;
 mod interval;
 mod label_column;
+mod mauchly_law;
 mod natural_order;
 mod observations;
 mod page;
@@ -35,6 +37,7 @@ mod study_analysis;
 mod study_ratings;
 mod table_file;
 mod tail;
+mod text_table;
 
 pub use anova::anova;
 pub use anova_table::{AnovaTable, EffectRow};
@@ -45,7 +48,7 @@ pub use interval::{CellSummary, cell_summaries};
 pub use natural_order::natural_order;
 pub use observations::Observations;
 pub use report::{ReportSummary, report};
-pub use sphericity::{Mauchly, Sphericity};
+pub use sphericity::{Epsilons, Mauchly, Sphericity};
 pub use study_ratings::Pilots;
 pub use table_file::{anova_of_table, read_observations};
 pub use tail::{f_tail, ln_f_tail, t_quantile};

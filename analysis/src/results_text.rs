@@ -159,10 +159,14 @@ pub(crate) fn sphericity(anova: &AnovaTable, correction: Correction) -> String {
             "The Huynh–Feldt correction (Lecoutre’s form) leads, as the protocol states: it is applied to every effect with \
              more than two levels and does not wait for a test of sphericity."
         }
+        Correction::ChiMuller => {
+            "The Chi–Muller correction leads, as the protocol states: it is applied to every effect with more than two levels \
+             and does not wait for a test of sphericity."
+        }
     };
     let mut text = lead.to_owned();
     for row in &anova.effects {
-        if let (Some(w), Some(p)) = (row.mauchly_w, row.mauchly_p) {
+        if let (Some(w), Some(p)) = (row.mauchly_w, row.mauchly_p_exact) {
             // Writing to a `String` cannot fail.
             _ = write!(
                 text,

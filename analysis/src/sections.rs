@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use protocols::{ChannelGroup, Correction, Layout, Observer, RayCount, Study};
 
 use crate::EffectRow;
-use crate::anova_table::p_text;
 use crate::apa;
 use crate::page::{Table, escaped};
 use crate::results_text::{
@@ -14,6 +13,7 @@ use crate::results_text::{
 use crate::study_analysis::{ConditionMean, StudyAnalysis};
 use crate::study_ratings::StudyRatings;
 use crate::tail::f_tail;
+use crate::text_table::p_text;
 
 /// All that the sections speak of.
 pub(crate) struct Sections<'a> {
@@ -198,8 +198,9 @@ impl Sections<'_> {
         };
         format!(
             "<section>\n<h2>Analysis of variance</h2>\n<p>{}{}</p>\n{}\
-             <p class=\"note\">η²<sub>p</sub> and η²<sub>G</sub>: partial and generalized eta squared. The Huynh–Feldt ε is \
-             Lecoutre’s, as it comes out; above 1 it counts as 1. A dash marks what does not exist.</p>\n{list}</section>\n",
+             <p class=\"note\">η²<sub>p</sub>, η²<sub>G</sub>, ω²<sub>p</sub>: partial and generalized eta squared, partial \
+             omega squared. The Huynh–Feldt ε is Lecoutre’s; it and Chi–Muller’s stand as they come out, above 1 they count as 1. \
+             The p of Mauchly’s W is by its exact law. A dash marks what does not exist.</p>\n{list}</section>\n",
             sphericity(
                 &self.analysis.anova,
                 self.study.protocol.analysis.correction
@@ -219,8 +220,11 @@ impl Sections<'_> {
             "<i>p</i>",
             "ε",
             "<i>p</i>",
+            "ε",
+            "<i>p</i>",
             "η²<sub>p</sub>",
             "η²<sub>G</sub>",
+            "ω²<sub>p</sub>",
             "<i>W</i>",
             "<i>p</i>",
         ];
@@ -229,7 +233,8 @@ impl Sections<'_> {
             format!("{text}{}", if leads { " (leads)" } else { "" })
         };
         let caption = format!(
-            "Analysis of variance, type III, of the ratings of {}.",
+            "Analysis of variance, type {}, of the ratings of {}.",
+            self.analysis.anova.sums_of_squares.numeral(),
             self.who()
         );
         let mut table = Table::new(&caption, &columns).grouped(&[
@@ -240,7 +245,8 @@ impl Sections<'_> {
                 2,
             ),
             (&heading("Huynh–Feldt", Correction::HuynhFeldt), 2),
-            ("effect size", 2),
+            (&heading("Chi–Muller", Correction::ChiMuller), 2),
+            ("effect size", 3),
             ("Mauchly", 2),
         ]);
         for row in &self.analysis.anova.effects {
@@ -406,10 +412,13 @@ fn anova_cells(row: &EffectRow) -> Vec<String> {
         p_cell(row.p_gg),
         number(row.hf_epsilon, 3),
         p_cell(row.p_hf),
+        number(row.cm_epsilon, 3),
+        p_cell(row.p_cm),
         fraction_cell(row.pes, 3),
         fraction_cell(row.ges, 3),
+        fraction_cell(row.omega2, 3),
         fraction_cell(row.mauchly_w, 3),
-        p_cell(row.mauchly_p),
+        p_cell(row.mauchly_p_exact),
     ]
 }
 

@@ -8,9 +8,11 @@ use std::fmt;
 
 use protocols::rating::RatingRow;
 use protocols::{
-    AnalysisPlan, ChannelGroup, InputError, RayCount, Stimulus, StimulusId, StimulusPlan, Study,
+    AnalysisPlan, ChannelGroup, InputError, Missing, RayCount, Stimulus, StimulusId, StimulusPlan,
+    Study,
 };
 
+use crate::cell_matrix::missing_ratings;
 use crate::interval::{mean, standard_deviation};
 use crate::study_ratings::StudyRatings;
 use crate::tail::{f_tail, t_quantile};
@@ -255,7 +257,11 @@ fn anova_as_planned(
             "subjects who rated every image",
         ));
     }
-    let mut cells = CellMatrix::new(&observations)?;
+    if plan.missing == Missing::Fail && !incomplete.is_empty() {
+        let names: Vec<String> = incomplete.iter().map(ToString::to_string).collect();
+        return Err(missing_ratings(&ratings.folder, &names));
+    }
+    let mut cells = CellMatrix::with_missing(&observations, plan.missing)?;
     let unfinished = incomplete.iter().map(|one| one.subject.clone());
     cells.dropped_subjects.extend(unfinished);
     if !incomplete.is_empty() {
@@ -265,7 +271,7 @@ fn anova_as_planned(
             names.join(", ")
         ));
     }
-    Ok(anova(&cells, &[]))
+    Ok(anova(&cells, &[], plan.sums_of_squares))
 }
 
 /// Mean and intervals of every image; each group of subjects has its own normalisation.

@@ -21,7 +21,8 @@ const LARGEST_RATING: f64 = 1e100;
 /// no table, a column that is not there, a rating that is no number, a design that the rows do not fill.
 pub fn anova_of_table(path: &Path, design: &Design) -> Result<AnovaTable, AnalysisError> {
     let observations = read_observations(path, design)?;
-    Ok(anova(&CellMatrix::new(&observations)?, &design.observed))
+    let cells = CellMatrix::with_missing(&observations, design.missing)?;
+    Ok(anova(&cells, &design.observed, design.sums_of_squares))
 }
 
 /// Reads the columns of `design` from a table.

@@ -1,9 +1,10 @@
-//! The plain slow way as judge: type III sums of squares as differences of residual sums of squares, from a
+//! The plain slow way as judge: type III and type II sums of squares as differences of residual sums of squares, from a
 //! sum-to-zero coded design matrix, without contrasts, group means or shortcuts.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use analysis::{AnovaTable, CellMatrix, Observations, anova};
 use nalgebra::DMatrix;
+use protocols::SumsOfSquares;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 
@@ -53,12 +54,28 @@ fn term_columns(levels: [usize; 2], term: [bool; 2]) -> Vec<f64> {
 
 const TERMS: [[bool; 2]; 4] = [[false, false], [true, false], [false, true], [true, true]];
 
-/// The residual sum of squares of `scores` on the columns of all terms but `without`.
-fn residual_ss(data: &Data, scores: &[f64], without: Option<[bool; 2]>) -> f64 {
+/// The terms that stand in the larger of the two models whose difference is `term`.
+fn terms_beside(term: [bool; 2], kind: SumsOfSquares) -> Vec<[bool; 2]> {
+    let holds_term = |other: &[bool; 2]| (0..2).all(|factor| other[factor] || !term[factor]);
+    match kind {
+        SumsOfSquares::TypeThree => TERMS.to_vec(),
+        SumsOfSquares::TypeTwo => (TERMS.into_iter())
+            .filter(|other| *other == term || !holds_term(other))
+            .collect(),
+    }
+}
+
+/// The residual sum of squares of `scores` on the columns of `terms`.
+fn residual_ss(data: &Data, scores: &[f64], terms: &[[bool; 2]]) -> f64 {
+    if terms.is_empty() {
+        return scores.iter().map(|score| score * score).sum();
+    }
     let rows: Vec<Vec<f64>> = (data.iter())
         .map(|(levels, _)| {
-            let terms = TERMS.into_iter().filter(|term| Some(*term) != without);
-            terms.flat_map(|term| term_columns(*levels, term)).collect()
+            let terms = terms.iter();
+            terms
+                .flat_map(|term| term_columns(*levels, *term))
+                .collect()
         })
         .collect();
     let design = DMatrix::from_fn(rows.len(), rows[0].len(), |row, column| rows[row][column]);
@@ -89,7 +106,7 @@ fn within_scores(data: &Data) -> (Vec<f64>, Vec<Vec<f64>>) {
     (means, deviations)
 }
 
-fn fast(data: &Data) -> AnovaTable {
+fn fast(data: &Data, kind: SumsOfSquares) -> AnovaTable {
     let names = |names: &[&str]| {
         names
             .iter()
@@ -108,45 +125,44 @@ fn fast(data: &Data) -> AnovaTable {
             );
         }
     }
-    anova(&CellMatrix::new(&observations).unwrap(), &[])
+    anova(&CellMatrix::new(&observations).unwrap(), &[], kind)
 }
 
 #[test]
-fn type_three_is_the_residual_without_the_term_less_that_with_it() {
-    for seed in 0..20 {
+fn an_effect_is_the_residual_without_the_term_less_that_with_it() {
+    for (seed, kind) in (0..10).flat_map(|seed| {
+        [SumsOfSquares::TypeThree, SumsOfSquares::TypeTwo].map(|kind| (seed, kind))
+    }) {
         let data = random_data(seed);
-        let table = fast(&data);
+        let table = fast(&data, kind);
         let (means, deviations) = within_scores(&data);
         for term in TERMS {
-            let between: Vec<&str> = ["f", "g"]
-                .into_iter()
-                .zip(term)
-                .filter(|(_, held)| *held)
+            let names = ["f", "g"].into_iter().zip(term);
+            let between: Vec<&str> = (names.filter(|(_, held)| *held))
                 .map(|(name, _)| name)
                 .collect();
             for (suffix, columns) in [(None, vec![means.clone()]), (Some("w"), deviations.clone())]
             {
-                let name = between
-                    .iter()
-                    .copied()
-                    .chain(suffix)
-                    .collect::<Vec<_>>()
-                    .join(":");
+                let names: Vec<&str> = between.iter().copied().chain(suffix).collect();
+                let name = names.join(":");
                 if name.is_empty() {
                     continue;
                 }
-                let sum = |without| {
-                    columns
-                        .iter()
-                        .map(|scores| residual_ss(&data, scores, without))
+                let sum = |terms: &[[bool; 2]]| {
+                    let scores = columns.iter();
+                    scores
+                        .map(|scores| residual_ss(&data, scores, terms))
                         .sum::<f64>()
                 };
-                let error = sum(None);
-                let effect = sum(Some(term)) - error;
+                let error = sum(&TERMS);
+                let with = terms_beside(term, kind);
+                let without: Vec<[bool; 2]> =
+                    with.iter().copied().filter(|one| *one != term).collect();
+                let effect = sum(&without) - sum(&with);
                 let row = table.effect(&name).unwrap();
                 assert!(
                     (row.ss_effect - effect).abs() < 1e-9 * (effect + error),
-                    "{seed} {name}"
+                    "{seed} {name} {kind:?}"
                 );
                 assert!((row.ss_error / error - 1.0).abs() < 1e-10, "{seed} {name}");
             }
@@ -160,7 +176,8 @@ fn the_order_of_subjects_changes_no_f() {
     let data = random_data(77);
     let mut reversed = data.clone();
     reversed.reverse();
-    let (one, other) = (fast(&data), fast(&reversed));
+    let kind = SumsOfSquares::TypeThree;
+    let (one, other) = (fast(&data, kind), fast(&reversed, kind));
     for (one, other) in one.effects.iter().zip(&other.effects) {
         assert!((one.f.unwrap() / other.f.unwrap() - 1.0).abs() < 1e-10);
         assert!(

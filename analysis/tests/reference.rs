@@ -8,6 +8,7 @@ use analysis::{
     AnalysisError, AnovaTable, CellMatrix, Design, EffectRow, anova_of_table, cell_summaries,
     read_observations,
 };
+use protocols::{Missing, SumsOfSquares};
 use serde_json::Value;
 
 fn own_folder() -> PathBuf {
@@ -40,6 +41,8 @@ impl Case {
             within: names("within"),
             between: names("between"),
             observed: names("observed"),
+            sums_of_squares: SumsOfSquares::TypeThree,
+            missing: Missing::Drop,
         }
     }
 
@@ -47,10 +50,11 @@ impl Case {
         anova_of_table(&self.table, &self.design())
     }
 
-    /// Expected rows, without the intercept.
-    fn rows(&self) -> Vec<&Value> {
-        let rows = self.expected["anova_type3"]["ref"].as_array().unwrap();
-        rows.iter()
+    /// Expected rows, without the intercept; none where there is no such analysis.
+    fn rows(&self, analysis: &str) -> Vec<&Value> {
+        let rows = self.expected[analysis]["ref"].as_array();
+        rows.into_iter()
+            .flatten()
             .filter(|row| row["effect"] != "(Intercept)")
             .collect()
     }
@@ -156,8 +160,36 @@ fn assert_effect(case: &Case, found: &EffectRow, expected: &Value) {
         assert_eq!(found.mauchly_w, None);
         return;
     }
+    assert_sphericity(case, found, expected);
+}
+
+fn assert_sphericity(case: &Case, found: &EffectRow, expected: &Value) {
+    let what = |field: &str| format!("{}, {}, {field}", case.id(), found.effect);
+    let tolerance = case.tolerance();
+    let near = |field: &str, found, key: &str| {
+        assert_near(&what(field), found, number(&expected[key]), tolerance);
+    };
+    let is_p_defined = number(&expected["F"]).is_some();
+    let p = |key: &str| number(&expected[key]).filter(|_| is_p_defined);
     near("gg_epsilon", found.gg_epsilon, "gg_eps");
     near("hf_epsilon", found.hf_epsilon, "hf_eps");
+    near(
+        "hf_epsilon_classic",
+        found.hf_epsilon_classic,
+        "hf_eps_classic",
+    );
+    near("cm_epsilon", found.cm_epsilon, "cm_eps");
+    if found.ss_error > 0.0 {
+        near("lb_epsilon", found.lb_epsilon, "lb_eps");
+    }
+    assert_p_near(
+        &what("p_hf_classic"),
+        found.p_hf_classic,
+        p("p_hf_classic"),
+        tolerance,
+    );
+    assert_p_near(&what("p_cm"), found.p_cm, p("p_cm"), tolerance);
+    assert_p_near(&what("p_lb"), found.p_lb, p("p_lb"), tolerance);
     assert_p_near(&what("p_gg"), found.p_gg, p("p_gg"), tolerance);
     assert_p_near(&what("p_hf"), found.p_hf, p("p_hf"), tolerance);
     let is_singular = expected["singular"] == true;
@@ -195,9 +227,16 @@ fn assert_case(case: &Case) {
         .collect();
     dropped.sort_by(|left, right| analysis::natural_order(left, right));
     assert_eq!(table.dropped_subjects, dropped, "{}", case.id());
-    let expected = case.rows();
+    let expected = case.rows("anova_type3");
     assert_eq!(table.effects.len(), expected.len(), "{}", case.id());
     for (found, expected) in table.effects.iter().zip(expected) {
+        assert_effect(case, found, expected);
+    }
+    assert_omega_squared(case, &table);
+    let mut design_two = case.design();
+    design_two.sums_of_squares = SumsOfSquares::TypeTwo;
+    let type_two = anova_of_table(&case.table, &design_two).unwrap();
+    for (found, expected) in type_two.effects.iter().zip(case.rows("anova_type2")) {
         assert_effect(case, found, expected);
     }
     let json = table.to_json();
@@ -208,6 +247,19 @@ fn assert_case(case: &Case) {
     );
     for row in &table.effects {
         assert_every_null_has_its_reason(case.id(), row, &table.warnings);
+    }
+}
+
+/// R's effectsize 0.8.3, which agrees with JASP.
+fn assert_omega_squared(case: &Case, table: &AnovaTable) {
+    let rows = case.expected["effectsize"]["table"].as_array();
+    for row in rows.into_iter().flatten() {
+        let found = table.effect(row["effect"].as_str().unwrap()).unwrap();
+        let what = format!("{}, {}, omega2", case.id(), found.effect);
+        let expected = number(&row["omega2_partial"]);
+        if found.f.is_some() {
+            assert_near(&what, found.omega2, expected, case.tolerance());
+        }
     }
 }
 

@@ -192,10 +192,18 @@ fn json_csv_and_text_say_the_same() {
         "p_gg",
         "hf_epsilon",
         "p_hf",
+        "hf_epsilon_classic",
+        "p_hf_classic",
+        "cm_epsilon",
+        "p_cm",
+        "lb_epsilon",
+        "p_lb",
         "pes",
         "ges",
+        "omega2",
         "mauchly_w",
         "mauchly_p",
+        "mauchly_p_exact",
     ];
     let csv = table.to_csv();
     assert_eq!(csv.lines().next().unwrap(), expected.join(","));
@@ -208,4 +216,17 @@ fn json_csv_and_text_say_the_same() {
     assert!(csv.contains(&f.to_string()));
     assert!(table.to_text().contains("55.40"), "{}", table.to_text());
     assert_eq!(json["effects"][0]["mauchly_w"], serde_json::Value::Null);
+}
+
+#[test]
+fn a_missing_rating_stops_the_analysis_where_the_design_says_so() {
+    let table = "who,rays,score\na,1K,3\na,2K,4\nb,1K,5\nb,2K,NA\nc,1K,1\nc,2K,1\n";
+    let dropped = analyse("t.csv", table.as_bytes(), &design()).unwrap();
+    assert_eq!(dropped.dropped_subjects, ["b"]);
+    let strict = Design {
+        missing: protocols::Missing::Fail,
+        ..design()
+    };
+    let message = analyse("t.csv", table.as_bytes(), &strict).unwrap_err();
+    assert!(message.contains("ratings missing of: b"), "{message}");
 }

@@ -14,6 +14,12 @@ pub struct AnalysisPlan {
     /// Levels that the analysis of variance leaves out.
     #[serde(default)]
     pub exclude: Vec<Exclusion>,
+    /// The type of the sums of squares; it matters with unbalanced groups only.
+    #[serde(default)]
+    pub sums_of_squares: SumsOfSquares,
+    /// What is done with a subject of whom a rating is missing.
+    #[serde(default)]
+    pub missing: Missing,
     /// The sphericity correction that the report leads with.
     pub correction: Correction,
     /// The confidence level of intervals, between 0 and 1.
@@ -92,6 +98,41 @@ pub enum Correction {
     GreenhouseGeisser,
     /// Huynh & Feldt (1976) in the form of Lecoutre (1991).
     HuynhFeldt,
+    /// Chi & Muller (2012): best calibrated with more contrasts than error degrees of freedom.
+    ChiMuller,
+}
+
+/// For which other terms a hypothesis on unbalanced groups is adjusted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum SumsOfSquares {
+    /// For all terms that do not contain it: most powerful where there is no interaction.
+    #[serde(rename = "II")]
+    TypeTwo,
+    /// For all other terms: hypotheses on the unweighted means of the groups.
+    #[default]
+    #[serde(rename = "III")]
+    TypeThree,
+}
+
+impl SumsOfSquares {
+    /// `II` or `III`.
+    pub fn numeral(self) -> &'static str {
+        match self {
+            Self::TypeTwo => "II",
+            Self::TypeThree => "III",
+        }
+    }
+}
+
+/// What is done with a subject of whom a rating is missing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Missing {
+    /// The subject is left out, by name.
+    #[default]
+    Drop,
+    /// The analysis stops and names the subjects.
+    Fail,
 }
 
 /// A test statistic printed elsewhere.

@@ -28,7 +28,9 @@ mod study;
 mod subject_id;
 mod viewing;
 
-pub use analysis_plan::{AnalysisPlan, Correction, Exclusion, PublishedEffect};
+pub use analysis_plan::{
+    AnalysisPlan, Correction, Exclusion, Missing, PublishedEffect, SumsOfSquares,
+};
 pub use atomic_file::{Access, write_atomically};
 pub use channel::{Channel, ChannelGroup, PerChannel};
 pub use data_set::{DataSet, Observer};
