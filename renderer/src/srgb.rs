@@ -45,6 +45,15 @@ fn encoded(linear: f64) -> f64 {
     }
 }
 
+/// The linear primary of an encoded one from 0 to 1: the inverse of the transfer curve.
+pub(crate) fn srgb_decoded(encoded: f64) -> f64 {
+    if encoded <= 0.040_45 {
+        encoded / 12.92
+    } else {
+        libm::pow((encoded + 0.055) / 1.055, 2.4)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -63,6 +72,14 @@ mod tests {
     fn every_code_comes_back_through_the_inverse_curve_of_the_standard() {
         for code in 0..=255 {
             assert_eq!(srgb_encode(decoded(code)), code);
+        }
+    }
+
+    #[test]
+    fn every_code_is_decoded_as_the_standard_says() {
+        for code in 0..=255 {
+            let ours = srgb_decoded(f64::from(code) / 255.0);
+            assert!((ours - decoded(code)).abs() < 1e-15);
         }
     }
 

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use serde::Deserialize;
-use serde::de::{self, Deserializer, SeqAccess, Visitor};
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{self, Deserializer, MapAccess, SeqAccess, Visitor};
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -191,11 +192,19 @@ pub(super) struct GroundTable {
     pub(super) height_m: f64,
 }
 
-/// A spectrum by name or by control points.
+/// A spectrum by name, by control points, or by the colour that it is to have.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum SpectrumValue {
     Named(String),
     Points(Vec<[f64; 2]>),
+    Srgb([f64; 3]),
+}
+
+/// `{ srgb = [r, g, b] }`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SrgbTable {
+    srgb: [f64; 3],
 }
 
 impl<'de> Deserialize<'de> for SpectrumValue {
@@ -210,7 +219,9 @@ impl<'de> Visitor<'de> for SpectrumVisitor {
     type Value = SpectrumValue;
 
     fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str("the name of a spectrum or control points [[nm, value], ...]")
+        formatter.write_str(
+            "the name of a spectrum, control points [[nm, value], ...] or { srgb = [r, g, b] }",
+        )
     }
 
     fn visit_str<E: de::Error>(self, name: &str) -> Result<SpectrumValue, E> {
@@ -223,5 +234,10 @@ impl<'de> Visitor<'de> for SpectrumVisitor {
             points.push(point);
         }
         Ok(SpectrumValue::Points(points))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<SpectrumValue, A::Error> {
+        let table = SrgbTable::deserialize(MapAccessDeserializer::new(map))?;
+        Ok(SpectrumValue::Srgb(table.srgb))
     }
 }

@@ -25,8 +25,9 @@
 //!
 //! `diffuse` and `glossy` may have `checker` or `stripes`: a second reflectance in every other square or
 //! stripe along the surface. A reflectance is the name of an entry of `[reflectances]`, the name of a
-//! measured one (`colorchecker red`), or control points `[[nm, value], …]` with straight lines between them
-//! and level ends.
+//! measured one (`colorchecker red`), control points `[[nm, value], …]` with straight lines between them
+//! and level ends, or `{ srgb = [r, g, b] }`, from 0 to 1: the smooth reflectance that has this colour under
+//! D65. An `emittance` of `{ srgb = … }` is D65 through a filter of this colour.
 //!
 //! Surface coordinates are in metres: on a sphere along the equator and the meridian; on a cylinder or cone
 //! round the axis and up the side; on a box or rectangle along its edges; on the ground x and y.

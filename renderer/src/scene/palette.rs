@@ -10,7 +10,9 @@ use super::material::{
     Body, Highlight, Material, Mirror, Pattern, PatternLayout, ReflectanceIndex,
 };
 use super::table::Table;
+use crate::spectra::uplift::sigmoid_of_linear_srgb;
 use crate::spectra::{Spectrum, measured};
+use crate::srgb::srgb_decoded;
 
 /// The materials of a scene and what they refer to.
 #[derive(Debug, Default)]
@@ -193,6 +195,7 @@ impl<'file> Known<'file> {
                 SpectrumValue::Points(points) => {
                     reflectance_of_points(place, "(its value)", points)?
                 }
+                SpectrumValue::Srgb(srgb) => reflectance_of_srgb(place, "(its value)", *srgb)?,
             };
             known.by_name.insert(name, spectrum);
         }
@@ -216,6 +219,7 @@ impl<'file> Known<'file> {
     ) -> Result<Spectrum, InputError> {
         match value {
             SpectrumValue::Points(points) => reflectance_of_points(place, field, points),
+            SpectrumValue::Srgb(srgb) => reflectance_of_srgb(place, field, *srgb),
             SpectrumValue::Named(name) => {
                 let known = self.by_name.get(name.as_str()).cloned();
                 let known = known.or_else(|| measured::reflectance(name));
@@ -266,6 +270,30 @@ fn reflectance_of_points(
     points: &[[f64; 2]],
 ) -> Result<Spectrum, InputError> {
     spectrum_of_points(place, field, points, 1.0)
+}
+
+/// The reflectance of an encoded sRGB colour.
+fn reflectance_of_srgb(
+    place: Table<'_>,
+    field: &str,
+    srgb: [f64; 3],
+) -> Result<Spectrum, InputError> {
+    let linear = linear_of_srgb(place, field, srgb)?;
+    Ok(Spectrum::Sigmoid(sigmoid_of_linear_srgb(linear)))
+}
+
+/// The linear primaries of an encoded sRGB colour.
+pub(super) fn linear_of_srgb(
+    place: Table<'_>,
+    field: &str,
+    srgb: [f64; 3],
+) -> Result<[f64; 3], InputError> {
+    if srgb.iter().all(|primary| (0.0..=1.0).contains(primary)) {
+        Ok(srgb.map(srgb_decoded))
+    } else {
+        let expected = "sRGB primaries from 0 to 1";
+        Err(place.error(field, format!("srgb = {srgb:?}"), expected))
+    }
 }
 
 fn highlight(place: Table<'_>, strength: f64, exponent: f64) -> Result<Highlight, InputError> {

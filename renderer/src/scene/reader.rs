@@ -8,7 +8,7 @@ use super::Scene;
 use super::camera::Camera;
 use super::file::{AmbientTable, CameraTable, SceneFile, SpectrumValue};
 use super::light::{Ambient, Light, Source};
-use super::palette::{Palette, spectrum_of_points};
+use super::palette::{Palette, linear_of_srgb, spectrum_of_points};
 use super::shapes::shapes;
 use super::table::Table;
 use crate::geometry::Hierarchy;
@@ -122,10 +122,14 @@ fn emission(table: Table<'_>, emittance: &SpectrumValue) -> Result<Emission, Inp
             let found = "control points without visible light".to_owned();
             (Emission::of(spectrum), found)
         }
+        SpectrumValue::Srgb(srgb) => {
+            let linear = linear_of_srgb(table, "emittance", *srgb)?;
+            (Emission::of_linear_srgb(linear), "black".to_owned())
+        }
     };
     emission.ok_or_else(|| {
         let expected = "\"D65\", \"A\", \"E\", \"blackbody 3200 K\" (500 to 100000 K), or control \
-                        points [[nm, power], ...] with visible light";
+                        points [[nm, power], ...] with visible light, or { srgb = [r, g, b] }";
         table.error("emittance", found, expected)
     })
 }

@@ -4,6 +4,7 @@
 
 use protocols::PerChannel;
 
+use super::uplift::sigmoid_of_linear_srgb;
 use super::{Spectrum, cie, sensitivities};
 
 /// Planck's second radiation constant, in nm·K.
@@ -46,6 +47,15 @@ impl Emission {
         Self::of(spectrum)
     }
 
+    /// D65 seen through a filter of a linear sRGB colour, whose largest primary is taken as 1; `None` for
+    /// black.
+    pub(crate) fn of_linear_srgb(rgb: [f64; 3]) -> Option<Self> {
+        let largest = rgb.into_iter().fold(0.0, f64::max);
+        let filter = sigmoid_of_linear_srgb(rgb.map(|primary| primary / largest));
+        let is_light = largest > 0.0 && largest.is_finite();
+        is_light.then(|| Self::of(cie::d65().times(Spectrum::Sigmoid(filter))))?
+    }
+
     /// Power per nm at a wavelength, for Y = 1.
     pub(crate) fn at(&self, wavelength_nm: f64) -> f64 {
         self.scale * self.spectrum.at(wavelength_nm)
@@ -76,6 +86,7 @@ fn blackbody(kelvin: f64) -> Spectrum {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::opponent::linear_srgb_from_ac1c2;
 
     #[test]
     fn d65_and_e_have_the_opponent_channels_that_numpy_says() {
@@ -100,6 +111,22 @@ mod tests {
             let nm = f64::from(nm);
             assert!((lamp.at(nm) / a.at(nm) - 1.0).abs() < 1e-3, "at {nm} nm");
         }
+    }
+
+    #[test]
+    fn a_light_of_an_rgb_colour_has_that_colour() {
+        let [r, g, b] = [0.9, 0.5, 0.2];
+        let light = Emission::of_linear_srgb([r, g, b]).unwrap();
+        let ours = linear_srgb_from_ac1c2(light.ac1c2());
+        // The luminance of the colour by the second row of the sRGB matrix (IEC 61966-2-1).
+        let y = 0.212_639 * r + 0.715_169 * g + 0.072_192 * b;
+        for (ours, theirs) in ours.into_iter().zip([r, g, b]) {
+            assert!((ours - theirs / y).abs() < 0.01, "{ours} {}", theirs / y);
+        }
+        assert!(Emission::of_linear_srgb([0.0; 3]).is_none());
+        let white = Emission::of_linear_srgb([5.0; 3]).unwrap();
+        let d65 = Emission::named("D65").unwrap();
+        assert!((white.at(450.0) / d65.at(450.0) - 1.0).abs() < 1e-6);
     }
 
     #[test]

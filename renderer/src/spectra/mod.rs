@@ -10,10 +10,13 @@ pub(crate) mod emission;
 pub(crate) mod measured;
 pub(crate) mod quadrature;
 pub(crate) mod sensitivity;
+pub(crate) mod sigmoid;
 pub(crate) mod spectrum;
 mod table;
+pub(crate) mod uplift;
 
 pub(crate) use emission::Emission;
 pub(crate) use quadrature::WavelengthRule;
 pub(crate) use sensitivity::sensitivities;
+pub(crate) use sigmoid::Sigmoid;
 pub(crate) use spectrum::Spectrum;

@@ -1,16 +1,23 @@
-//! A spectrum: values at wavelengths, with straight lines between them.
+//! A spectrum: values at wavelengths with straight lines between them, or a smooth curve.
 
-/// Control points in the order of their wavelengths; straight lines between them, and before the first and
-/// after the last the value of that point.
+use super::Sigmoid;
+
+/// A value at each wavelength.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Spectrum {
-    points: Vec<[f64; 2]>,
+pub(crate) enum Spectrum {
+    /// Control points in the order of their wavelengths; straight lines between them, and before the first
+    /// and after the last the value of that point.
+    Points(Vec<[f64; 2]>),
+    /// The reflectance of an RGB colour.
+    Sigmoid(Sigmoid),
+    /// The product of two.
+    Product(Box<[Self; 2]>),
 }
 
 impl Spectrum {
     /// The spectrum of pairs of wavelength (nm) and value, with wavelengths that rise.
     pub(crate) const fn of_points(points: Vec<[f64; 2]>) -> Self {
-        Self { points }
+        Self::Points(points)
     }
 
     /// The same value at every wavelength.
@@ -18,25 +25,44 @@ impl Spectrum {
         Self::of_points(vec![[560.0, value]])
     }
 
+    /// The product with another spectrum.
+    pub(crate) fn times(self, other: Self) -> Self {
+        Self::Product(Box::new([self, other]))
+    }
+
     /// The value at a wavelength.
     pub(crate) fn at(&self, wavelength_nm: f64) -> f64 {
-        let next = self.points.partition_point(|&[nm, _]| nm <= wavelength_nm);
-        match (next.checked_sub(1), self.points.get(next)) {
-            (None, None) => 0.0,
-            (None, Some(&[_, first])) => first,
-            (Some(last), None) => self.points[last][1],
-            (Some(before), Some(&[nm_after, after])) => {
-                let [nm_before, before] = self.points[before];
-                let part = (wavelength_nm - nm_before) / (nm_after - nm_before);
-                before + part * (after - before)
+        match self {
+            Self::Points(points) => on_lines(points, wavelength_nm),
+            Self::Sigmoid(sigmoid) => sigmoid.at(wavelength_nm),
+            Self::Product(factors) => {
+                let [one, other] = factors.as_ref();
+                one.at(wavelength_nm) * other.at(wavelength_nm)
             }
         }
     }
 
-    /// The largest value.
+    /// The largest value, or a bound of it.
     pub(crate) fn peak(&self) -> f64 {
-        let values = self.points.iter().map(|&[_, value]| value);
-        values.fold(0.0, f64::max)
+        match self {
+            Self::Points(points) => points.iter().fold(0.0, |most, &[_, value]| most.max(value)),
+            Self::Sigmoid(sigmoid) => sigmoid.peak(),
+            Self::Product(factors) => factors[0].peak() * factors[1].peak(),
+        }
+    }
+}
+
+fn on_lines(points: &[[f64; 2]], wavelength_nm: f64) -> f64 {
+    let next = points.partition_point(|&[nm, _]| nm <= wavelength_nm);
+    match (next.checked_sub(1), points.get(next)) {
+        (None, None) => 0.0,
+        (None, Some(&[_, first])) => first,
+        (Some(last), None) => points[last][1],
+        (Some(before), Some(&[nm_after, after])) => {
+            let [nm_before, before] = points[before];
+            let part = (wavelength_nm - nm_before) / (nm_after - nm_before);
+            before + part * (after - before)
+        }
     }
 }
 

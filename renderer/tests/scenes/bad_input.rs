@@ -152,6 +152,31 @@ const CASES: &[(&str, &str, &[&str])] = &[
         &["\"colorchecker pink\"", "colorchecker magenta"],
     ),
     (
+        "[[400, 0.1], [700, 0.6]]",
+        "{ srgb = [0.5, 0.5, 1.5] }",
+        &["reflectances \"rust\"", "1.5", "from 0 to 1"],
+    ),
+    (
+        "[[400, 0.1], [700, 0.6]]",
+        "{ srgb = [0.5, nan, 0.5] }",
+        &["reflectances \"rust\"", "NaN"],
+    ),
+    (
+        "[[400, 0.1], [700, 0.6]]",
+        "{ srgb = [0.5, 0.5] }",
+        &["array of length 3"],
+    ),
+    (
+        "[[400, 0.1], [700, 0.6]]",
+        "{ rgb = [0.5, 0.5, 0.5] }",
+        &["unknown field `rgb`", "srgb"],
+    ),
+    (
+        "emittance = \"D65\"",
+        "emittance = { srgb = [0, 0, 0] }",
+        &["lamp", "found black"],
+    ),
+    (
         "rust = [[",
         "\"colorchecker red\" = [[",
         &["a name of its own"],
