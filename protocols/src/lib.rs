@@ -10,6 +10,7 @@
 //!
 //! Not here: how a ray, a session or a test statistic is computed.
 
+mod acuity;
 mod analysis_plan;
 mod atomic_file;
 mod channel;
@@ -28,6 +29,7 @@ mod study;
 mod subject_id;
 mod viewing;
 
+pub use acuity::Acuity;
 pub use analysis_plan::{
     AnalysisPlan, Correction, Exclusion, Missing, PublishedEffect, SumsOfSquares,
 };

@@ -7,7 +7,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    InputError, RayCount, ReadError, Sha256Digest, StimulusId, StimulusPlan, Study, Viewing,
+    Acuity, InputError, RayCount, ReadError, Sha256Digest, StimulusId, StimulusPlan, Study, Viewing,
 };
 
 /// `manifest.json`: what a stimulus set is, and the digest of every file of it.
@@ -30,6 +30,9 @@ pub struct Manifest {
     pub remarks: Vec<String>,
     /// How the images are meant to be seen.
     pub viewing: ViewingGeometry,
+    /// Beyond which cutoffs no channel was refined, if it was so limited.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub acuity: Option<Acuity>,
     /// One entry for each image.
     pub stimuli: Vec<ManifestStimulus>,
 }
@@ -153,6 +156,16 @@ impl Manifest {
             return Err(
                 InputError::new(path, "a set made from another plan", expected).remedy(remedy),
             );
+        }
+        let acuity = study.protocol.acuity;
+        let viewing = ViewingGeometry::from(study.protocol.viewing);
+        if self.acuity != acuity || (acuity.is_some() && self.viewing != viewing) {
+            let expected = format!(
+                "the limits that [acuity] and [viewing] of \"{}\" set",
+                study.path.display()
+            );
+            let found = "a set made with other limits of acuity";
+            return Err(InputError::new(path, found, expected).remedy(remedy));
         }
         for stimulus in study.protocol.stimuli.stimuli() {
             if self.stimulus(&stimulus.id).is_none() {

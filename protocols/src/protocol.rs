@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{AnalysisPlan, InputError, ModelObserver, SessionPlan, StimulusPlan, Viewing};
+use crate::{Acuity, AnalysisPlan, InputError, ModelObserver, SessionPlan, StimulusPlan, Viewing};
 
 /// A whole study: its images, its sessions, its analysis. Unknown keys are refused.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -20,6 +20,9 @@ pub struct Protocol {
     pub stimuli: StimulusPlan,
     /// Where the subject sits.
     pub viewing: Viewing,
+    /// What the eye resolves from there; if it is said, no channel is refined beyond it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub acuity: Option<Acuity>,
     /// How the images are shown and rated.
     pub session: SessionPlan,
     /// What a simulated observer is.
@@ -60,6 +63,7 @@ impl Protocol {
         self.stimuli
             .fault()
             .or_else(|| self.viewing.fault())
+            .or_else(|| self.acuity.and_then(Acuity::fault))
             .or_else(|| self.session.fault())
             .or_else(|| self.simulation.fault())
             .or_else(|| self.analysis.fault())

@@ -13,6 +13,12 @@ pub struct Viewing {
 }
 
 impl Viewing {
+    /// 40 inches and 0.019° a pixel: section 3.4 of Meyer & Liu (1992).
+    pub const MEYER_LIU_1992: Self = Self {
+        distance_cm: 101.6,
+        degrees_per_pixel: 0.019,
+    };
+
     /// The width of a pixel on the screen, `distance · tan(angle)`.
     ///
     /// ```

@@ -34,7 +34,7 @@ fn the_paper_has_28_images_of_which_one_ends_both_sequences() {
 }
 
 /// A value of the protocol, what a user might write instead, and what the message must then name.
-const FAULTS: [(&str, &str, &str); 14] = [
+const FAULTS: [(&str, &str, &str); 17] = [
     ("exposure_s = 10.0", "exposure_sec = 10.0", "exposure_sec"),
     (
         "exposure_s = 10.0",
@@ -81,11 +81,39 @@ const FAULTS: [(&str, &str, &str); 14] = [
     ("\"16 bands\"", "\"2 bands\"", "3 to 301"),
     ("[viewing]", "[viewing", "line"),
     (
+        "[viewing]",
+        "[acuity]\nluminance_cutoff_cpd = 0\n[viewing]",
+        "acuity.luminance_cutoff_cpd",
+    ),
+    (
+        "[viewing]",
+        "[acuity]\nchromatic_cutoff_cpd = nan\n[viewing]",
+        "acuity.chromatic_cutoff_cpd",
+    ),
+    (
+        "[viewing]",
+        "[acuity]\ncutoff_cpd = 11\n[viewing]",
+        "chromatic_cutoff_cpd",
+    ),
+    (
         "study = \"meyer-liu-1992\"",
         "study = \"../up\"",
         "names folders",
     ),
 ];
+
+#[test]
+fn a_cutoff_that_acuity_leaves_out_is_mullens() {
+    let text = std::fs::read_to_string(paper().path).unwrap();
+    assert_eq!(paper().protocol.acuity, None);
+    let text = text.replace("[viewing]", "[acuity]\nchromatic_cutoff_cpd = 9\n[viewing]");
+    let protocol = protocols::Protocol::from_toml(Path::new("x.toml"), &text).unwrap();
+    let acuity = protocol.acuity.unwrap();
+    assert_eq!(
+        (acuity.luminance_cutoff_cpd, acuity.chromatic_cutoff_cpd),
+        (34.0, 9.0)
+    );
+}
 
 #[test]
 fn what_is_wrong_with_a_protocol_is_named_with_file_place_and_expectation() {

@@ -1,8 +1,11 @@
 //! A cell of the screen tree: a rectangle of the screen that follows from a path of halvings alone.
 //!
-//! The root is the whole screen. A cell at an even depth is halved along x, at an odd depth along y. The
-//! path is the number of the cell: 1 for the root, then `2p` for the half nearer to 0 and `2p + 1` for the
-//! other, so that the random numbers of a cell can be a function of the cell and of nothing else.
+//! The root is the whole screen. A cell is halved along its longer side as it is on the picture, along x if
+//! both are equal: on a square picture along x at even depths and along y at odd ones, on a longer picture
+//! first as often along the long side as makes the cells about square. So cells of the same depth are equal,
+//! and a depth is a size. The path is the number of the cell: 1 for the root, then `2p` for the half nearer
+//! to 0 and `2p + 1` for the other, so that the random numbers of a cell can be a function of the cell and of
+//! nothing else.
 //!
 //! Source: Painter & Sloan (1989), as described in section 3.1 of Meyer & Liu (1992).
 
@@ -15,7 +18,21 @@ use crate::sampler::ScreenPoint;
 /// A rectangle that halving the screen leads to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Cell {
-    path: u64,
+    /// The path in the lower bits; above [`SHAPE_SHIFT`] how the screen begins to be halved.
+    bits: u64,
+}
+
+/// Above the longest path, of 49 bits.
+const SHAPE_SHIFT: u32 = 56;
+const PATH: u64 = (1 << SHAPE_SHIFT) - 1;
+/// The bit of the shape that says that y comes first.
+const Y_FIRST: u64 = 16;
+
+/// An axis of the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Axis {
+    X,
+    Y,
 }
 
 /// An axis-aligned rectangle of the screen, in screen coordinates.
@@ -32,15 +49,60 @@ pub struct Rectangle {
 }
 
 impl Cell {
-    /// The whole screen.
-    pub const ROOT: Self = Self { path: 1 };
+    /// The whole screen of a square picture.
+    pub const ROOT: Self = Self { bits: 1 };
 
-    /// No cell is halved at this depth: its side is then 2⁻²⁴ of the screen.
+    /// No cell is halved at this depth: on a square picture its side is then 2⁻²⁴ of the screen.
     pub const DEEPEST: u32 = 48;
+
+    /// The whole screen of a picture of this size, none of whose sides is 2¹⁵ times the other or longer.
+    pub fn screen(size_px: [u32; 2]) -> Self {
+        let [width, height] = size_px.map(u64::from);
+        let is_y_first = height > width;
+        let is_long = |halvings: u32| {
+            if is_y_first {
+                height > width << halvings
+            } else {
+                width >= height << halvings
+            }
+        };
+        // The first halving is along the long side in any case.
+        let more: u64 = (1..=15).take_while(|&halvings| is_long(halvings)).count() as u64;
+        let shape = more | if is_y_first { Y_FIRST } else { 0 };
+        Self {
+            bits: (shape << SHAPE_SHIFT) | 1,
+        }
+    }
+
+    const fn path(self) -> u64 {
+        self.bits & PATH
+    }
+
+    /// The axis of the first halving, and how many halvings are along it before the other has its turn.
+    const fn beginning(self) -> (Axis, u32) {
+        let shape = self.bits >> SHAPE_SHIFT;
+        let axis = if shape & Y_FIRST == 0 {
+            Axis::X
+        } else {
+            Axis::Y
+        };
+        (axis, 1 + (shape % Y_FIRST) as u32)
+    }
+
+    /// How many halvings along the first axis and along the other lead here.
+    fn halvings(self) -> [u32; 2] {
+        let (_, beginning) = self.beginning();
+        let depth = self.depth();
+        let alternating = depth.saturating_sub(beginning);
+        [
+            depth.min(beginning) + alternating / 2,
+            alternating.div_ceil(2),
+        ]
+    }
 
     /// How many halvings lead here: 0 for the whole screen.
     pub const fn depth(self) -> u32 {
-        self.path.ilog2()
+        self.path().ilog2()
     }
 
     /// The fraction of the screen that the cell covers, 2^−depth.
@@ -50,26 +112,72 @@ impl Cell {
 
     /// The two halves, the one nearer to 0 first.
     pub const fn halves(self) -> [Self; 2] {
-        let path = self.path << 1;
-        [Self { path }, Self { path: path | 1 }]
+        let shape = self.bits & !PATH;
+        let path = self.path() << 1;
+        [
+            Self { bits: shape | path },
+            Self {
+                bits: shape | path | 1,
+            },
+        ]
+    }
+
+    /// The least depth at which no side of a cell is longer than this many pixels of the picture.
+    pub fn depth_of_side(size_px: [u32; 2], longest_px: f64) -> u32 {
+        let [width, height] = size_px.map(f64::from);
+        let mut cell = Self::screen(size_px);
+        let is_too_long = |cell: Self| {
+            let rectangle = cell.rectangle();
+            rectangle.width * width > longest_px || rectangle.height * height > longest_px
+        };
+        while cell.depth() < Self::DEEPEST && is_too_long(cell) {
+            cell = cell.halves()[0];
+        }
+        cell.depth()
     }
 
     /// Where the cell lies; exact, since every edge is a dyadic fraction.
     pub fn rectangle(self) -> Rectangle {
+        let (axis, beginning) = self.beginning();
         let depth = self.depth();
-        let halvings = self.path ^ (1 << depth);
-        let (along_x, along_y) = if depth.is_multiple_of(2) {
-            (even_bits(halvings >> 1), even_bits(halvings))
+        let steps = self.path() ^ (1 << depth);
+        let alternating = depth.saturating_sub(beginning);
+        let begun = steps >> alternating;
+        // The other axis has the first turn, and every second one from there.
+        let steps = steps & ((1 << alternating) - 1);
+        let [first_steps, other_steps] = if alternating.is_multiple_of(2) {
+            [steps, steps >> 1]
         } else {
-            (even_bits(halvings), even_bits(halvings >> 1))
+            [steps >> 1, steps]
         };
-        let width = half_to_the(depth.div_ceil(2));
-        let height = half_to_the(depth / 2);
+        let along_first = (begun << (alternating / 2)) | u64::from(even_bits(first_steps));
+        let [first, other] = self.halvings();
+        let first = (along_first as f64 * half_to_the(first), half_to_the(first));
+        let other_length = half_to_the(other);
+        let other = (
+            f64::from(even_bits(other_steps)) * other_length,
+            other_length,
+        );
+        let ((left, width), (top, height)) = match axis {
+            Axis::X => (first, other),
+            Axis::Y => (other, first),
+        };
         Rectangle {
-            left: f64::from(along_x) * width,
-            top: f64::from(along_y) * height,
+            left,
+            top,
             width,
             height,
+        }
+    }
+
+    /// The axis along which the cell is halved.
+    fn axis(self) -> Axis {
+        let (axis, beginning) = self.beginning();
+        let depth = self.depth();
+        let is_first_turn = depth < beginning || !(depth - beginning).is_multiple_of(2);
+        match (axis, is_first_turn) {
+            (Axis::X, true) | (Axis::Y, false) => Axis::X,
+            (Axis::Y, true) | (Axis::X, false) => Axis::Y,
         }
     }
 
@@ -81,10 +189,9 @@ impl Cell {
             width,
             height,
         } = self.rectangle();
-        let is_second = if self.depth().is_multiple_of(2) {
-            point.x >= left + 0.5 * width
-        } else {
-            point.y >= top + 0.5 * height
+        let is_second = match self.axis() {
+            Axis::X => point.x >= left + 0.5 * width,
+            Axis::Y => point.y >= top + 0.5 * height,
         };
         usize::from(is_second)
     }
@@ -96,7 +203,7 @@ impl Cell {
         let mut key = [0; 32];
         key[..8].copy_from_slice(&seed.to_le_bytes());
         let mut random = ChaCha8Rng::from_seed(key);
-        random.set_stream(self.path);
+        random.set_stream(self.path());
         let mut fraction = || (random.next_u64() >> 11) as f64 * half_to_the(53);
         let rectangle = self.rectangle();
         ScreenPoint {
@@ -136,17 +243,20 @@ fn even_bits(bits: u64) -> u32 {
 mod tests {
     use super::*;
 
-    /// The plain way: halve the rectangle step by step along the path.
-    fn rectangle_by_halving(cell: Cell) -> Rectangle {
+    /// The plain way: halve the longer side of the rectangle step by step along the path.
+    fn rectangle_by_halving(path: u64, size_px: [u32; 2]) -> Rectangle {
         let mut rectangle = Rectangle {
             left: 0.0,
             top: 0.0,
             width: 1.0,
             height: 1.0,
         };
-        for step in 0..cell.depth() {
-            let is_second = (cell.path >> (cell.depth() - 1 - step)) & 1 == 1;
-            let (start, length) = if step % 2 == 0 {
+        let [width_px, height_px] = size_px.map(f64::from);
+        let depth = path.ilog2();
+        for step in 0..depth {
+            let is_second = (path >> (depth - 1 - step)) & 1 == 1;
+            let is_along_x = rectangle.width * width_px >= rectangle.height * height_px;
+            let (start, length) = if is_along_x {
                 (&mut rectangle.left, &mut rectangle.width)
             } else {
                 (&mut rectangle.top, &mut rectangle.height)
@@ -159,20 +269,60 @@ mod tests {
         rectangle
     }
 
+    const SIZES_PX: [[u32; 2]; 9] = [
+        [320, 320],
+        [1, 1],
+        [640, 320],
+        [639, 320],
+        [641, 320],
+        [320, 640],
+        [100, 1281],
+        [16_384, 1],
+        [1, 16_384],
+    ];
+
     #[test]
-    fn a_rectangle_is_what_halving_step_by_step_gives() {
-        let paths = (1..5000).chain([(1 << 47) | 0x1234_5678_9abc, (1 << 48) | 0x0fed_cba9_8765]);
-        for path in paths {
-            let cell = Cell { path };
-            assert_eq!(cell.rectangle(), rectangle_by_halving(cell));
-            assert_eq!(cell.rectangle().area(), cell.area());
+    fn a_rectangle_is_what_halving_the_longer_side_step_by_step_gives() {
+        let far = [(1 << 47) | 0x1234_5678_9abc, (1 << 48) | 0x0fed_cba9_8765];
+        for size_px in SIZES_PX {
+            for path in (1..5000).chain(far) {
+                let cell = Cell {
+                    bits: Cell::screen(size_px).bits ^ 1 ^ path,
+                };
+                assert_eq!(cell.rectangle(), rectangle_by_halving(path, size_px));
+                assert_eq!(cell.rectangle().area(), cell.area());
+            }
+        }
+    }
+
+    #[test]
+    fn the_screen_of_a_square_picture_is_the_root() {
+        assert_eq!(Cell::screen([320, 320]), Cell::ROOT);
+    }
+
+    #[test]
+    fn the_depth_of_a_side_is_the_first_at_which_both_sides_are_no_longer() {
+        for size_px in SIZES_PX {
+            for longest_px in [0.3, 1.0, 2.39, 7.0, 5000.0] {
+                let depth = Cell::depth_of_side(size_px, longest_px);
+                let is_fine = |depth: u32| {
+                    let rectangle = rectangle_by_halving(1 << depth, size_px);
+                    rectangle.width * f64::from(size_px[0]) <= longest_px
+                        && rectangle.height * f64::from(size_px[1]) <= longest_px
+                };
+                assert!(is_fine(depth));
+                assert!(depth == 0 || !is_fine(depth - 1));
+            }
         }
     }
 
     #[test]
     fn a_random_point_lies_in_its_cell_and_in_the_half_that_is_named() {
         for path in 1..2000 {
-            let cell = Cell { path };
+            let size_px = SIZES_PX[(path % 9) as usize];
+            let cell = Cell {
+                bits: Cell::screen(size_px).bits ^ 1 ^ path,
+            };
             let point = cell.random_point(7);
             let half = cell.halves()[cell.half_of(point)].rectangle();
             assert!((half.left..half.left + half.width).contains(&point.x));

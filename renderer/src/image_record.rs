@@ -13,6 +13,8 @@ pub struct ImageRecord {
     pub rays_a: RayCount,
     /// How many rays made C1 and C2.
     pub rays_c1c2: RayCount,
+    /// From how many samples each channel was made: fewer than its rays, if a depth ended it before.
+    pub samples: PerChannel<u64>,
     /// Below these depths of the tree a channel was not computed.
     pub stop_depths: PerChannel<Option<u32>>,
     /// The seed of the sample positions.
@@ -38,6 +40,9 @@ impl ImageRecord {
                 "tent, radius 1 pixel, exact over each leaf".to_owned(),
             ),
             ("quadrature", String::from(self.quadrature)),
+            ("samplesA", self.samples.a.to_string()),
+            ("samplesC1", self.samples.c1.to_string()),
+            ("samplesC2", self.samples.c2.to_string()),
             ("sceneSha256", self.scene_sha256.to_string()),
             ("seed", self.seed.to_string()),
             ("stopDepthA", depth(self.stop_depths.a)),

@@ -4,14 +4,15 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 
 use protocols::{
-    Channel, ChannelGroup, InputError, PerChannel, Quadrature, RayCount, RefinementDriver,
-    StimulusPlan, TreePlan,
+    Channel, ChannelGroup, InputError, PerChannel, Protocol, Quadrature, RayCount,
+    RefinementDriver, TreePlan,
 };
 
 use crate::account::RayAccount;
+use crate::acuity_limits::AcuityLimits;
 use crate::cell::Cell;
 use crate::refine::TracePlan;
-use crate::screen_tree::Reach;
+use crate::screen_tree::{Reach, ScreenTree};
 
 /// One image: its size, its ray counts and how its tree is made.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -35,12 +36,16 @@ pub struct ImageRequest {
 }
 
 impl ImageRequest {
-    /// The request for an image of a plan.
-    pub fn from_plan(plan: &StimulusPlan, rays_a: RayCount, rays_c1c2: RayCount) -> Self {
+    /// The request for an image of a study, whose `[acuity]` says how deep each channel goes.
+    pub fn from_protocol(protocol: &Protocol, rays_a: RayCount, rays_c1c2: RayCount) -> Self {
+        let plan = &protocol.stimuli;
+        let limits = protocol
+            .acuity
+            .map(|acuity| AcuityLimits::new(acuity, protocol.viewing, plan.size_px));
         Self {
             rays_a,
             rays_c1c2,
-            stop_depths: PerChannel::default(),
+            stop_depths: limits.map_or_else(PerChannel::default, |limits| limits.stop_depths()),
             size_px: plan.size_px,
             seed: plan.seed,
             quadrature: plan.quadrature,
@@ -76,23 +81,28 @@ impl ImageRequest {
         }
     }
 
-    /// What the image costs on its own if no depth stops a channel.
+    /// What the image costs on its own, counted in a tree of which its own is the beginning.
     ///
     /// A channel that drives alone is shaded wherever a ray goes, even beyond its own image.
-    pub fn account(&self) -> RayAccount {
-        let intersections = u64::from(self.rays_a.max(self.rays_c1c2).get());
+    pub fn account_in(&self, tree: &ScreenTree) -> RayAccount {
+        let rays = self.rays_a.max(self.rays_c1c2).as_usize().min(tree.len());
         let shadings = PerChannel::from_fn(|channel| {
             let drives_alone = self.tree.driver == RefinementDriver::A && channel == Channel::A;
             if drives_alone {
-                intersections
+                rays as u64
             } else {
-                u64::from(self.rays(channel).get())
+                tree.leaf_count(self.reach(channel)) as u64
             }
         });
         RayAccount {
-            intersections,
+            intersections: rays as u64,
             shadings,
         }
+    }
+
+    /// How many rectangles each channel's image is filtered from, counted in the same way.
+    pub fn rectangles_in(&self, tree: &ScreenTree) -> PerChannel<u64> {
+        PerChannel::from_fn(|channel| tree.leaf_count(self.reach(channel)) as u64)
     }
 
     /// Refuses a request that contradicts itself; `scene` is only named in errors.
@@ -117,6 +127,11 @@ impl ImageRequest {
                 min_depth.to_string(),
                 "a depth from 1 to 12",
             );
+        }
+        let most = self.rays_a.max(self.rays_c1c2);
+        if most.get() > ScreenTree::MOST_SAMPLES {
+            let expected = format!("at most {} rays", ScreenTree::MOST_SAMPLES);
+            return wrong("ray count", format!("{most} rays"), &expected);
         }
         let cells = 1_u32 << min_depth;
         let fewest = self.rays_a.min(self.rays_c1c2);

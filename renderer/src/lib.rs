@@ -4,6 +4,7 @@
 //! right-handed with z up, lengths in metres.
 
 mod account;
+mod acuity_limits;
 mod cell;
 mod channel_image;
 mod channel_samples;
@@ -40,6 +41,7 @@ mod waiting;
 mod watch;
 
 pub use account::RayAccount;
+pub use acuity_limits::{AcuityLimit, AcuityLimits};
 pub use cell::{Cell, Rectangle};
 pub use channel_image::ChannelImage;
 pub use error::RendererError;

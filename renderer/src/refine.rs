@@ -113,12 +113,13 @@ pub(crate) fn trace_from<S: Sampler>(
         pixel_area: 1.0 / (f64::from(plan.size_px[0]) * f64::from(plan.size_px[1])),
     };
     let mut ray_tree = S::RayTree::default();
-    let first = Probe::new(plan, 0, Cell::ROOT);
+    let screen = Cell::screen(plan.size_px);
+    let first = Probe::new(plan, 0, screen);
     let first = match taken.first() {
         Some(taken) => first.recall(*taken),
         None => first.take(sampler, &mut ray_tree),
     };
-    let mut tree = ScreenTree::new(&first, &plan.capacity(), rays);
+    let mut tree = ScreenTree::new(screen, &first, plan.capacity(), rays);
     let mut waiting = Waiting::new();
     let wait = |waiting: &mut Waiting, candidate: Candidate| {
         let cell = candidate.node.cell;
@@ -127,7 +128,7 @@ pub(crate) fn trace_from<S: Sampler>(
         }
     };
     let root = Candidate {
-        node: PlacedNode::ROOT,
+        node: tree.root(),
         expected: ExpectedVariance::default(),
     };
     wait(&mut waiting, root);

@@ -106,9 +106,16 @@ pub fn render_image_of(
         });
     };
     let channels = PerChannel { a, c1, c2 };
+    let rectangles = PerChannel {
+        a: *a_count,
+        c1: *c1_count,
+        c2: *c2_count,
+    };
     let picture = SrgbEncoder::new().encode(channels);
     let bytes = match format {
-        Format::Exr => opponent_exr::encode(channels, &request.record(scene_sha256), out)?,
+        Format::Exr => {
+            opponent_exr::encode(channels, &request.record(scene_sha256, rectangles), out)?
+        }
         Format::Png => picture.to_png(out)?,
     };
     write_atomically(out, &bytes, Access::Ordinary)
@@ -118,20 +125,22 @@ pub fn render_image_of(
         path: out.to_owned(),
         sha256: Sha256Digest::of(&bytes),
         account: tree.account(),
-        rectangles: PerChannel {
-            a: *a_count,
-            c1: *c1_count,
-            c2: *c2_count,
-        },
+        rectangles,
         out_of_gamut_px: picture.out_of_gamut_px,
         remark: remark::of_driver(request.tree.driver),
     })
 }
 
 impl ImageRequest {
-    pub(crate) fn record(&self, scene_sha256: Sha256Digest) -> ImageRecord {
+    /// What the file of the image says, with the samples from which each channel was made.
+    pub(crate) fn record(
+        &self,
+        scene_sha256: Sha256Digest,
+        samples: PerChannel<u64>,
+    ) -> ImageRecord {
         ImageRecord {
             scene_sha256,
+            samples,
             rays_a: self.rays_a,
             rays_c1c2: self.rays_c1c2,
             stop_depths: self.stop_depths,

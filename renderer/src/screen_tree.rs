@@ -29,6 +29,7 @@ use crate::sampler::{GridPoint, ScreenPoint};
 /// A k-D tree over the screen, in the order of its making.
 #[derive(Clone, Debug)]
 pub struct ScreenTree {
+    root: Cell,
     nodes: Vec<Node>,
     samples: PerChannel<ChannelSamples>,
     points: Vec<GridPoint>,
@@ -73,11 +74,14 @@ pub(crate) struct PlacedNode {
 }
 
 impl PlacedNode {
-    pub(crate) const ROOT: Self = Self {
-        index: 0,
-        sample: 0,
-        cell: Cell::ROOT,
-    };
+    /// The root of any tree over this screen.
+    pub(crate) const fn root(screen: Cell) -> Self {
+        Self {
+            index: 0,
+            sample: 0,
+            cell: screen,
+        }
+    }
 
     fn children(self, node: Node) -> [Self; 2] {
         let first = 2 * node.splitter() - 1;
@@ -133,10 +137,16 @@ impl ScreenTree {
     /// The tree of one cell, the screen, with its sample; with room for `capacity` samples in all.
     ///
     /// Room that is not used is not touched, so it takes no memory.
-    pub(crate) fn new(first: &NewSample, capacity: &PerChannel<usize>, rays: usize) -> Self {
+    pub(crate) fn new(
+        root: Cell,
+        first: &NewSample,
+        capacity: PerChannel<usize>,
+        rays: usize,
+    ) -> Self {
         let mut nodes = Vec::with_capacity(2 * rays);
         nodes.push(Node::LEAF);
         let mut tree = Self {
+            root,
             nodes,
             samples: PerChannel::from_fn(|channel| {
                 ChannelSamples::with_capacity(capacity[channel])
@@ -207,6 +217,11 @@ impl ScreenTree {
         self.samples[channel].get(sample)
     }
 
+    /// The root.
+    pub(crate) const fn root(&self) -> PlacedNode {
+        PlacedNode::root(self.root)
+    }
+
     /// The children that a node had after `rays` samples, if it was split by then.
     pub(crate) fn children(&self, node: PlacedNode, rays: usize) -> Option<[PlacedNode; 2]> {
         let stored = self.nodes[node.index as usize];
@@ -218,7 +233,7 @@ impl ScreenTree {
     ///
     /// A ray count beyond the end of the tree means the whole tree.
     pub(crate) fn leaf_nodes(&self, reach: Reach) -> impl Iterator<Item = PlacedNode> {
-        let mut waiting = vec![PlacedNode::ROOT];
+        let mut waiting = vec![self.root()];
         std::iter::from_fn(move || {
             let mut node = waiting.pop()?;
             while node.cell.depth() < reach.depth
@@ -229,6 +244,17 @@ impl ScreenTree {
             }
             Some(node)
         })
+    }
+
+    /// How many leaves lie within a reach.
+    ///
+    /// A ray count beyond the end of the tree means the whole tree.
+    pub fn leaf_count(&self, reach: Reach) -> usize {
+        if reach.depth >= Cell::DEEPEST {
+            reach.rays.min(self.len())
+        } else {
+            self.leaf_nodes(reach).count()
+        }
     }
 
     /// Calls `visit` with the leaves of one channel, each cell's first half before its second.

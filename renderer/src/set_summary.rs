@@ -3,13 +3,15 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use protocols::{ManifestStimulus, PerChannel, RayCount, StimulusId, StimulusPlan};
+use protocols::{ManifestStimulus, PerChannel, Protocol, RayCount, StimulusId};
 
 use crate::account::RayAccount;
+use crate::acuity_limits::AcuityLimits;
 use crate::image_request::ImageRequest;
+use crate::screen_tree::ScreenTree;
 
 /// What was made and what it cost.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SetSummary {
     /// The folder of the set.
     pub folder: PathBuf,
@@ -17,6 +19,8 @@ pub struct SetSummary {
     pub account: RayAccount,
     /// Each image.
     pub stimuli: Vec<StimulusSummary>,
+    /// What `[acuity]` implies, if the protocol has it.
+    pub acuity: Option<AcuityLimits>,
     /// The remarks of the manifest.
     pub remarks: Vec<String>,
 }
@@ -39,14 +43,14 @@ pub struct StimulusSummary {
 }
 
 impl StimulusSummary {
-    pub(crate) fn new(stimulus: &ManifestStimulus, plan: &StimulusPlan) -> Self {
-        let request = ImageRequest::from_plan(plan, stimulus.rays_a, stimulus.rays_c1c2);
+    pub(crate) fn new(stimulus: &ManifestStimulus, protocol: &Protocol, tree: &ScreenTree) -> Self {
+        let request = ImageRequest::from_protocol(protocol, stimulus.rays_a, stimulus.rays_c1c2);
         Self {
             id: stimulus.id.clone(),
             rays_a: stimulus.rays_a,
             rays_c1c2: stimulus.rays_c1c2,
-            alone: request.account(),
-            rectangles: PerChannel::from_fn(|channel| u64::from(request.rays(channel).get())),
+            alone: request.account_in(tree),
+            rectangles: request.rectangles_in(tree),
             out_of_gamut_px: stimulus.out_of_gamut_px,
         }
     }
@@ -73,6 +77,9 @@ impl fmt::Display for SetSummary {
             "{}: {images} images and manifest.json",
             self.folder.display()
         )?;
+        if let Some(limits) = &self.acuity {
+            writeln!(formatter, "{limits}")?;
+        }
         writeln!(formatter, "one trace for all of them: {}", self.account)?;
         writeln!(
             formatter,

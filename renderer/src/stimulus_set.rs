@@ -11,14 +11,16 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use protocols::{
-    Access, Channel, Manifest, ManifestFile, ManifestStimulus, PerChannel, RayCount, Sha256Digest,
-    Stimulus, StimulusPlan, Study, write_atomically,
+    Access, Channel, Manifest, ManifestFile, ManifestStimulus, PerChannel, Protocol, RayCount,
+    Sha256Digest, Stimulus, Study, write_atomically,
 };
 use rayon::prelude::*;
 
+use crate::acuity_limits::AcuityLimits;
 use crate::channel_image::ChannelImage;
 use crate::checkpoint::Checkpoint;
 use crate::error::RendererError;
+use crate::image_record::ImageRecord;
 use crate::image_request::ImageRequest;
 use crate::opponent_exr;
 use crate::reconstruct::reconstruct;
@@ -54,7 +56,7 @@ pub fn render_set_of(
 ) -> Result<SetSummary, RendererError> {
     let plan = &study.protocol.stimuli;
     let stimuli = plan.stimuli();
-    let trace_plan = trace_plan(plan);
+    let trace_plan = trace_plan(&study.protocol);
     let checkpoint = Checkpoint::beside(
         &out.join("trace"),
         &trace_plan,
@@ -63,16 +65,18 @@ pub fn render_set_of(
     );
     let tree = checkpoint.trace(sampler, &trace_plan, watch)?;
     remove_manifest(out)?;
-    let images = channel_images(&tree, plan);
+    let images = channel_images(&tree, &study.protocol);
     let encoder = SrgbEncoder::new();
     let images_done = AtomicU64::new(0);
     let write = |stimulus: &Stimulus| {
         if watch.is_cancelled() {
             return Err(checkpoint.interruption(&tree, &trace_plan));
         }
-        let request = ImageRequest::from_plan(plan, stimulus.rays_a, stimulus.rays_c1c2);
+        let request =
+            ImageRequest::from_protocol(&study.protocol, stimulus.rays_a, stimulus.rays_c1c2);
         let channels = recombine(&images, &request, out)?;
-        let written = write_stimulus(stimulus, channels, (&request, scene_sha256), &encoder, out)?;
+        let record = request.record(scene_sha256.clone(), request.rectangles_in(&tree));
+        let written = write_stimulus(stimulus, channels, &record, &encoder, out)?;
         let done = images_done.fetch_add(1, Ordering::Relaxed) + 1;
         watch.tell(Stage::Images, done, stimuli.len() as u64);
         Ok(written)
@@ -89,34 +93,47 @@ pub fn render_set_of(
         stimuli: manifest
             .stimuli
             .iter()
-            .map(|stimulus| StimulusSummary::new(stimulus, plan))
+            .map(|stimulus| StimulusSummary::new(stimulus, &study.protocol, &tree))
             .collect(),
+        acuity: study
+            .protocol
+            .acuity
+            .map(|acuity| AcuityLimits::new(acuity, study.protocol.viewing, plan.size_px)),
         remarks: manifest.remarks,
     })
 }
 
 /// Every channel as far as any image needs it.
-fn trace_plan(plan: &StimulusPlan) -> TracePlan {
+fn trace_plan(protocol: &Protocol) -> TracePlan {
+    let plan = &protocol.stimuli;
     let most = |rays: fn(&Stimulus) -> RayCount| {
         let counts = plan.stimuli().iter().map(rays).max();
         counts.unwrap_or_else(|| plan.most_rays())
     };
     let rays_a = most(|stimulus| stimulus.rays_a);
     let rays_c1c2 = most(|stimulus| stimulus.rays_c1c2);
-    ImageRequest::from_plan(plan, rays_a, rays_c1c2).trace_plan()
+    ImageRequest::from_protocol(protocol, rays_a, rays_c1c2).trace_plan()
 }
 
-fn channel_images(tree: &ScreenTree, plan: &StimulusPlan) -> PerChannel<ImagesByRays> {
-    let mut wanted: Vec<(Channel, RayCount)> = Vec::new();
+fn channel_images(tree: &ScreenTree, protocol: &Protocol) -> PerChannel<ImagesByRays> {
+    let plan = &protocol.stimuli;
+    let mut wanted: Vec<(Channel, RayCount, u32)> = Vec::new();
     for stimulus in plan.stimuli() {
-        let request = ImageRequest::from_plan(plan, stimulus.rays_a, stimulus.rays_c1c2);
-        wanted.extend(Channel::ALL.map(|channel| (channel, request.rays(channel))));
+        let request = ImageRequest::from_protocol(protocol, stimulus.rays_a, stimulus.rays_c1c2);
+        wanted.extend(
+            Channel::ALL
+                .map(|channel| (channel, request.rays(channel), request.reach(channel).depth)),
+        );
     }
     // The longest work first, so that no thread is left with it at the end.
     wanted.sort_unstable_by(|one, other| other.1.cmp(&one.1).then(one.0.cmp(&other.0)));
     wanted.dedup();
-    let image = |&(channel, rays): &(Channel, RayCount)| {
-        let leaves = tree.leaves(channel, Reach::rays(rays.as_usize()))?;
+    let image = |&(channel, rays, depth): &(Channel, RayCount, u32)| {
+        let reach = Reach {
+            rays: rays.as_usize(),
+            depth,
+        };
+        let leaves = tree.leaves(channel, reach)?;
         Some((channel, rays, reconstruct(&leaves, plan.size_px)))
     };
     let images: Vec<_> = wanted
@@ -155,7 +172,7 @@ fn recombine<'a>(
 fn write_stimulus(
     stimulus: &Stimulus,
     channels: PerChannel<&ChannelImage>,
-    (request, scene_sha256): (&ImageRequest, &Sha256Digest),
+    record: &ImageRecord,
     encoder: &SrgbEncoder,
     out: &Path,
 ) -> Result<ManifestStimulus, RendererError> {
@@ -170,8 +187,7 @@ fn write_stimulus(
         })
     };
     let path = out.join(stimulus.id.as_str());
-    let record = request.record(scene_sha256.clone());
-    let exr = write("exr", &opponent_exr::encode(channels, &record, &path)?)?;
+    let exr = write("exr", &opponent_exr::encode(channels, record, &path)?)?;
     let picture = encoder.encode(channels);
     let png = write("png", &picture.to_png(&path)?)?;
     let factors = stimulus.factors();
@@ -201,6 +217,7 @@ fn manifest(study: &Study, scene_sha256: Sha256Digest, stimuli: Vec<ManifestStim
             .into_iter()
             .collect(),
         viewing: study.protocol.viewing.into(),
+        acuity: study.protocol.acuity,
         stimuli,
     }
 }

@@ -63,6 +63,7 @@ pub(crate) fn write_stimuli(study: &Study, folder: &Path) -> PathBuf {
         color_space: "checks".to_owned(),
         remarks: Vec::new(),
         viewing: study.protocol.viewing.into(),
+        acuity: study.protocol.acuity,
     };
     let text = serde_json::to_string_pretty(&manifest).unwrap();
     fs::write(stimuli.join(Manifest::FILE_NAME), text).unwrap();

@@ -5,6 +5,7 @@
     reason = "values of pictures become f32, and places of pixels are small"
 )]
 
+mod acuity;
 mod analytic;
 mod estimates;
 mod files;

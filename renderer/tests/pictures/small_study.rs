@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use protocols::{PerChannel, Protocol, RayCount, Sha256Digest, Study};
+use protocols::{Protocol, RayCount, Sha256Digest, Study};
 use renderer::{ImageRequest, SetSummary, Watch, render_image_of, render_set_of};
 
 use crate::analytic::disc_and_checks;
@@ -53,9 +53,7 @@ pub(crate) fn render(study: &Study, out: &Path, threads: usize) -> SetSummary {
 /// The request for one image of a study.
 pub(crate) fn request(study: &Study, rays_a: u32, rays_c1c2: u32) -> ImageRequest {
     let [rays_a, rays_c1c2] = [rays_a, rays_c1c2].map(|rays| RayCount::new(rays).unwrap());
-    let request = ImageRequest::from_plan(&study.protocol.stimuli, rays_a, rays_c1c2);
-    assert_eq!(request.stop_depths, PerChannel::default());
-    request
+    ImageRequest::from_protocol(&study.protocol, rays_a, rays_c1c2)
 }
 
 /// The bytes of one image, traced alone.
