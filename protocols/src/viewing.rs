@@ -27,7 +27,7 @@ impl Viewing {
     /// assert!((viewing.pixel_pitch_mm() - 0.336_918_371_154_940_44).abs() < 1e-12);
     /// ```
     pub fn pixel_pitch_mm(self) -> f64 {
-        10.0 * self.distance_cm * self.degrees_per_pixel.to_radians().tan()
+        10.0 * self.distance_cm * libm::tan(self.degrees_per_pixel.to_radians())
     }
 
     /// How many pixels subtend one degree.

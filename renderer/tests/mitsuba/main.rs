@@ -55,7 +55,6 @@ impl Case {
 
     fn assert_same(&self) {
         let verdict = self.verdict(str::to_owned);
-        println!("{verdict}");
         assert!(verdict.is_same(), "{verdict}");
     }
 

@@ -7,10 +7,14 @@
 
 mod acuity;
 mod analytic;
+mod closed_forms;
 mod estimates;
+mod every_scene;
 mod files;
 mod interruption;
+mod platform;
 mod prefix;
+mod quadrature;
 mod reconstruction;
 mod scene;
 mod set;
