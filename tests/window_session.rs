@@ -231,7 +231,7 @@ fn a_session_that_is_killed_goes_on_and_has_every_rating_once() {
     assert!(text.contains("all 30 trials rated"), "{text}");
 
     let rows = place.rows("P2");
-    let order = experiment::trials(&place.study.protocol, &"P2".parse().unwrap(), 1);
+    let order = experiment::trials(&place.study, &"P2".parse().unwrap(), 1).unwrap();
     assert_eq!(rows.len(), 30);
     for ((number, row), trial) in (1..).zip(&rows).zip(&order) {
         assert_eq!(

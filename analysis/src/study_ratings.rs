@@ -310,7 +310,7 @@ fn check_row(study: &Study, path: &Path, index: usize, row: &RatingRow) -> Resul
         .iter()
         .filter(|s| !s.sequences.is_empty())
         .count();
-    let n_trials = session.practice.len() + n_rated * session.blocks as usize;
+    let n_trials = session.trial_count(n_rated);
     let out_of_range = |column: &str, found: u32, most: usize| {
         Err(InputError::new(
             path,
@@ -323,8 +323,9 @@ fn check_row(study: &Study, path: &Path, index: usize, row: &RatingRow) -> Resul
     if !(1..=n_trials).contains(&(row.trial_id as usize)) {
         return out_of_range("trial_id", row.trial_id, n_trials);
     }
-    if row.phase == Phase::Test && !(1..=session.blocks).contains(&row.repetition) {
-        return out_of_range("repetition", row.repetition, session.blocks as usize);
+    let most = session.most_repetitions();
+    if row.phase == Phase::Test && !(1..=most).contains(&row.repetition) {
+        return out_of_range("repetition", row.repetition, most as usize);
     }
     Ok(())
 }

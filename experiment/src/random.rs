@@ -44,6 +44,21 @@ impl Random {
         }
     }
 
+    /// A whole number below `length`, each as likely; 0 if there is none.
+    pub(crate) fn index(&mut self, length: usize) -> usize {
+        let bound = u32::try_from(length).unwrap_or(u32::MAX);
+        if bound == 0 {
+            0
+        } else {
+            self.below(bound) as usize
+        }
+    }
+
+    /// True with this probability.
+    pub(crate) fn is_below(&mut self, probability: f64) -> bool {
+        probability >= 1.0 || self.uniform() <= probability
+    }
+
     /// Evenly distributed on (0, 1], in steps of 2^-53.
     fn uniform(&mut self) -> f64 {
         let steps = (self.0.next_u64() >> 11) + 1;

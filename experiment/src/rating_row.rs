@@ -1,10 +1,10 @@
 //! The row that an answer becomes.
 
 use jiff::{SignedDuration, Timestamp};
-use protocols::rating::RatingRow;
+use protocols::rating::{RatingRow, ShownFirst};
 
 use crate::sidecar::SessionKey;
-use crate::{Answer, Trial};
+use crate::{Answer, First, Trial};
 
 /// The row of `answer` to `trial`; the driver's clock read zero at `clock_zero`.
 pub(crate) fn rating_row(
@@ -23,10 +23,16 @@ pub(crate) fn rating_row(
         repetition: trial.repetition,
         levels: trial.levels.clone(),
         rating: answer.rating,
+        reference_rating: answer.reference_rating,
+        shown_first: answer.reference_rating.map(|_| match trial.first {
+            First::Test => ShownFirst::Test,
+            First::Reference => ShownFirst::Reference,
+        }),
         response_time_s: answer.response_time_s,
         exposure_requested_s,
         exposure_submitted_s: answer.exposure_submitted_s,
         missed_frames: answer.missed_frames,
+        showings: answer.showings,
         started_at: utc(clock_zero, answer.started_s),
         observer: key.observer,
         pilot: key.pilot_speed.is_some(),

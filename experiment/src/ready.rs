@@ -12,9 +12,17 @@ use crate::{data_set_files, stimulus_set};
 /// Nothing is written but a trial file in the folder that will hold the ratings, which goes away at once.
 pub fn check_ready(study: &Study, stimuli_dir: &Path, data_dir: &Path) -> Vec<String> {
     let mut faults = stimulus_set::faults(study, stimuli_dir);
+    faults.extend(order_fault(study));
     faults.extend(data_fault(study, data_dir));
     faults.extend(display_fault());
     faults
+}
+
+/// Whether the protocol's limits leave the first subject an order.
+fn order_fault(study: &Study) -> Option<String> {
+    let subject = "01".parse().ok()?;
+    let order = crate::trials(study, &subject, 1);
+    order.err().map(|error| error.to_string())
 }
 
 fn data_fault(study: &Study, data_dir: &Path) -> Option<String> {

@@ -5,11 +5,13 @@
 //! trial: pause (grey) -> exposure -> rating (waits) -> saving -> next trial
 //! ```
 //!
-//! A sequence layout has three exposures (zero anchor, test image, ten anchor), each after its own pause.
+//! A layout of several pictures has several exposures, each after its own pause. Where the protocol lets the
+//! subject rate during the exposure, the scale stands below the last picture, and an answer ends it.
 //!
 //! What holds, whatever the events, and the tests check it:
 //!
-//! 1. no rating without a whole exposure of its image, none twice, none out of order;
+//! 1. no rating without an exposure of its image (a whole one, unless it may be rated before), none twice, none
+//!    out of order;
 //! 2. a click counts only if both its press and its release came after the frame with the scale was
 //!    submitted; nothing is preselected;
 //! 3. the next trial begins only after [`Event::Saved`];
@@ -21,50 +23,19 @@
 //!
 //! Not here: clocks, files, random numbers, pictures.
 
+mod hands;
+
 use crate::button::{Button, Key};
 use crate::frame_clock::{FrameClock, Interval};
+use crate::frame_log::FrameLog;
+use crate::note::{Note, Noted};
 use crate::order::Trial;
+use crate::picture::{First, Picture};
+use crate::response::Response;
+use crate::rules::Rules;
 
+use protocols::RatingTime;
 use protocols::rating::Phase;
-use protocols::{Layout, Scale, SessionPlan};
-
-/// Characters of a typed number; a scale has at most three digits and a sign.
-const MOST_TYPED: usize = 4;
-
-/// What the machine must know of the protocol.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rules {
-    /// How the anchors stand to the test image.
-    pub layout: Layout,
-    /// For how long the images are shown (in a sequence, each of them).
-    pub exposure_s: f64,
-    /// Grey before each exposure.
-    pub pause_s: f64,
-    /// The rating scale.
-    pub scale: Scale,
-}
-
-impl Rules {
-    /// The rules of a session at the speed of its protocol.
-    pub fn of(plan: &SessionPlan) -> Self {
-        Self {
-            layout: plan.layout,
-            exposure_s: plan.exposure_s,
-            pause_s: plan.pause_s,
-            scale: plan.scale,
-        }
-    }
-
-    /// The same rules with times this many times shorter.
-    #[must_use]
-    pub fn faster(self, speed: f64) -> Self {
-        Self {
-            exposure_s: self.exposure_s / speed,
-            pause_s: self.pause_s / speed,
-            ..self
-        }
-    }
-}
 
 /// Something that happens to the session.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,6 +45,8 @@ pub enum Event {
     Frame,
     /// The pointer's button went down, on this button of the screen or beside all of them.
     Press(Option<Button>),
+    /// The pointer moved with its button down.
+    Drag(Option<Button>),
     /// The pointer's button went up.
     Release(Option<Button>),
     /// A key went down.
@@ -87,43 +60,42 @@ pub enum Event {
 pub enum Screen {
     /// The instructions, with a button to begin.
     Instructions,
+    /// That a session that was cut off goes on, with a button.
+    Resumed,
     /// That the practice is over, with a button to go on.
     PracticeOver,
     /// Grey.
     Blank,
     /// Images of the trial with this index.
     Exposure(usize, Picture),
+    /// The same, with the rating scale below.
+    RatedExposure(usize, Picture),
     /// The rating scale.
     Rating,
+    /// That the answer took too long, with a button to see the images again.
+    TooSlow,
+    /// A rest, with a button to go on.
+    Paused,
     /// Whether to stop.
     ConfirmStop,
     /// The end.
     Thanks,
 }
 
-/// Which images are on the screen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Picture {
-    /// Zero anchor, test image and ten anchor, side by side.
-    Flanked,
-    /// The zero anchor alone.
-    ZeroAnchor,
-    /// The test image alone.
-    Test,
-    /// The ten anchor alone.
-    TenAnchor,
-}
-
-impl Picture {
-    fn all_of(layout: Layout) -> &'static [Self] {
-        match layout {
-            Layout::Flanking => &[Self::Flanked],
-            Layout::Sequence => &[Self::ZeroAnchor, Self::Test, Self::TenAnchor],
-        }
+impl Screen {
+    /// Whether the rating scale is on it.
+    pub fn has_scale(self) -> bool {
+        matches!(self, Self::Rating | Self::RatedExposure(..))
     }
 
-    fn has_test_image(self) -> bool {
-        matches!(self, Self::Flanked | Self::Test)
+    /// The images on it.
+    pub fn picture(self) -> Option<(usize, Picture)> {
+        match self {
+            Self::Exposure(trial, picture) | Self::RatedExposure(trial, picture) => {
+                Some((trial, picture))
+            }
+            _ => None,
+        }
     }
 }
 
@@ -132,14 +104,18 @@ impl Picture {
 pub struct Answer {
     /// The index of the trial in the session.
     pub trial: usize,
-    /// The rating.
+    /// The rating of the test image.
     pub rating: i32,
+    /// The rating of the reference, where both are rated.
+    pub reference_rating: Option<i32>,
     /// From the first frame submitted with the scale to the answer.
     pub response_time_s: f64,
     /// From the first frame submitted with the test image to the first without it.
     pub exposure_submitted_s: f64,
     /// Frames of the test image later than one and a half frame times after the one before.
     pub missed_frames: u32,
+    /// How often the trial was begun: more than once if its exposure was interrupted or the answer too late.
+    pub showings: u32,
     /// When the trial began, by the driver's clock.
     pub started_s: f64,
 }
@@ -156,14 +132,32 @@ pub enum Ending {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum State {
     Instructions,
+    Resumed,
     PracticeOver,
     /// Grey before the picture with this index in the layout.
     Pause(usize),
     Exposure(usize),
     Rating,
+    TooSlow,
+    /// Answered while the images stood; they are going.
+    Leaving(Given),
     Saving(Answer),
     Thanks,
     Over(Ending),
+}
+
+/// What was answered, and when.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Given {
+    marks: [Option<i32>; 2],
+    response_time_s: f64,
+}
+
+/// Why the session waits, and where it goes on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Interruption {
+    screen: Screen,
+    state: State,
 }
 
 /// How long the present screen has been there, and what was begun on it.
@@ -194,22 +188,28 @@ pub struct Session {
     trials: Vec<Trial>,
     rules: Rules,
     state: State,
-    /// Where the session goes on if the subject does not stop after all.
-    asking: Option<State>,
+    /// Why the session waits, if it does.
+    asking: Option<Interruption>,
     trial: usize,
     exposed: Exposed,
-    typed: String,
+    /// How often the present trial was begun.
+    showings: u32,
+    response: Response,
     view: View,
     clock: FrameClock,
+    frames: FrameLog,
+    /// What the latest frame showed.
+    drawn: Option<Screen>,
+    notes: Vec<Note>,
 }
 
 impl Session {
     /// A session of `trials`, of which the first `rated` are rated already.
     pub fn new(trials: Vec<Trial>, rated: usize, rules: Rules) -> Self {
-        let state = if rated >= trials.len() {
-            State::Thanks
-        } else {
-            State::Instructions
+        let state = match rated {
+            all if all >= trials.len() => State::Thanks,
+            0 => State::Instructions,
+            _ => State::Resumed,
         };
         Self {
             trials,
@@ -218,24 +218,41 @@ impl Session {
             asking: None,
             trial: rated,
             exposed: Exposed::default(),
-            typed: String::new(),
+            showings: 0,
+            response: Response::default(),
             view: View::default(),
             clock: FrameClock::default(),
+            frames: FrameLog::default(),
+            drawn: None,
+            notes: Vec::new(),
         }
     }
 
     /// What the frame that is drawn now shows.
     pub fn screen(&self) -> Screen {
-        if self.asking.is_some() {
-            return Screen::ConfirmStop;
+        if let Some(asking) = self.asking {
+            return asking.screen;
         }
         match self.state {
             State::Instructions => Screen::Instructions,
+            State::Resumed => Screen::Resumed,
             State::PracticeOver => Screen::PracticeOver,
-            State::Pause(_) | State::Saving(_) => Screen::Blank,
-            State::Exposure(part) => Screen::Exposure(self.trial, self.picture(part)),
+            State::Pause(_) | State::Leaving(_) | State::Saving(_) => Screen::Blank,
+            State::Exposure(part) if self.is_rated_now(part) => {
+                Screen::RatedExposure(self.trial, self.pictures()[part])
+            }
+            State::Exposure(part) => Screen::Exposure(self.trial, self.pictures()[part]),
             State::Rating => Screen::Rating,
+            State::TooSlow => Screen::TooSlow,
             State::Thanks | State::Over(_) => Screen::Thanks,
+        }
+    }
+
+    /// Which picture of a trial stands or is awaited, from 0.
+    pub fn part(&self) -> usize {
+        match self.state {
+            State::Pause(part) | State::Exposure(part) => part,
+            _ => 0,
         }
     }
 
@@ -258,16 +275,22 @@ impl Session {
     /// Whether frames must follow each other without a rest: time runs on the screen, or a frame waits to
     /// be submitted.
     pub fn needs_frames(&self) -> bool {
-        let is_timed = matches!(
-            self.state,
-            State::Pause(_) | State::Exposure(_) | State::Saving(_)
-        );
+        let is_timed = match self.state {
+            State::Pause(_) | State::Exposure(_) | State::Leaving(_) | State::Saving(_) => true,
+            State::Rating => self.rules.longest_response_s.is_finite(),
+            _ => false,
+        };
         (is_timed && self.asking.is_none()) || self.view.shown_s.is_none()
     }
 
-    /// The number that is being typed.
-    pub fn typed(&self) -> &str {
-        &self.typed
+    /// Whether the first frame of the present screen has been submitted.
+    pub fn is_shown(&self) -> bool {
+        self.view.shown_s.is_some()
+    }
+
+    /// What is typed and marked so far.
+    pub fn response(&self) -> &Response {
+        &self.response
     }
 
     /// The button that the pointer is held down on.
@@ -290,34 +313,58 @@ impl Session {
         &self.clock
     }
 
+    /// Every frame since this was last asked, in runs of one screen.
+    pub fn take_frames(&mut self) -> FrameLog {
+        std::mem::take(&mut self.frames)
+    }
+
+    /// What happened since this was last asked.
+    pub fn take_notes(&mut self) -> Vec<Note> {
+        std::mem::take(&mut self.notes)
+    }
+
+    /// Adds to what happened.
+    pub fn note(&mut self, event: Noted, at_s: f64, detail: impl Into<String>) {
+        self.notes.push(Note {
+            at_s,
+            trial: self.trial,
+            event,
+            detail: detail.into(),
+        });
+    }
+
     /// Takes one event that happened at `at_s`.
     pub fn on(&mut self, event: Event, at_s: f64) {
         match event {
             Event::Frame => self.frame(at_s),
-            Event::Press(button) if self.view.shown_s.is_some() => self.view.pressed = button,
-            Event::Release(button) => {
-                let pressed = self.view.pressed.take();
-                if let Some(button) = button.filter(|_| pressed == button) {
-                    self.push(button, at_s);
-                }
-            }
+            Event::Press(button) => self.press(button, at_s),
+            Event::Drag(button) => self.drag(button),
+            Event::Release(button) => self.release(button, at_s),
             Event::Key(key) if self.view.shown_s.is_some() => self.key(key, at_s),
             Event::Saved if self.to_save().is_some() => self.next_trial(at_s),
-            Event::Press(_) | Event::Key(_) | Event::Saved => {}
+            Event::Key(_) | Event::Saved => {}
         }
     }
 
-    fn picture(&self, part: usize) -> Picture {
-        Picture::all_of(self.rules.layout)[part]
+    fn pictures(&self) -> &'static [Picture] {
+        let first = self.trials.get(self.trial).map(|trial| trial.first);
+        Picture::all_of(self.rules.layout, first.unwrap_or(First::Test))
+    }
+
+    /// Whether the scale stands below this picture.
+    fn is_rated_now(&self, part: usize) -> bool {
+        self.rules.rating == RatingTime::DuringExposure && part + 1 == self.pictures().len()
     }
 
     fn go(&mut self, state: State) {
         self.state = state;
         self.view = View::default();
-        self.typed.clear();
     }
 
     fn frame(&mut self, at_s: f64) {
+        if let Some(drawn) = self.drawn {
+            self.frames.submitted(at_s, self.trial, drawn);
+        }
         let is_standing = self.asking.is_none()
             && self.exposed.onset_s.is_some()
             && self.exposed.offset_s.is_none();
@@ -334,25 +381,36 @@ impl Session {
             self.view.shown_s = Some(at_s);
             self.submitted(at_s);
         }
-        if self.asking.is_none() && self.is_due(at_s) {
-            self.next_part(at_s);
+        if self.asking.is_none() {
+            self.run(at_s);
         }
         self.view.is_drawn = true;
+        self.drawn = Some(self.screen());
+    }
+
+    /// What time alone brings about.
+    fn run(&mut self, at_s: f64) {
+        if let (State::Leaving(given), Some(_)) = (self.state, self.view.shown_s) {
+            self.wait_for_disk(given);
+        } else if self.is_due(at_s) {
+            self.next_part(at_s);
+        } else if self.is_too_late(at_s) {
+            self.note(Noted::TooLate, at_s, "");
+            self.go(State::TooSlow);
+        }
     }
 
     /// The first frame of the present screen has been submitted.
     fn submitted(&mut self, at_s: f64) {
-        let has_test_image = match self.screen() {
-            Screen::Exposure(_, picture) => picture.has_test_image(),
-            _ => false,
-        };
-        let is_scale = self.screen() == Screen::Rating;
+        let screen = self.screen();
+        let picture = screen.picture();
         let exposed = &mut self.exposed;
-        if is_scale {
+        if screen.has_scale() {
             exposed.scale_s = exposed.scale_s.or(Some(at_s));
         }
-        if has_test_image {
+        if picture.is_some_and(|(_, picture)| picture.has_test_image()) {
             exposed.onset_s = Some(at_s);
+            exposed.offset_s = None;
         } else if exposed.onset_s.is_some() {
             exposed.offset_s = exposed.offset_s.or(Some(at_s));
         }
@@ -371,10 +429,19 @@ impl Session {
         shown_s.is_some_and(|shown_s| at_s - shown_s >= duration_s - margin_s)
     }
 
+    fn is_too_late(&self, at_s: f64) -> bool {
+        let waited = |scale_s: f64| at_s - scale_s > self.rules.longest_response_s;
+        self.is_rating() && self.exposed.scale_s.is_some_and(waited)
+    }
+
+    fn is_rating(&self) -> bool {
+        self.asking.is_none() && self.screen().has_scale()
+    }
+
     fn next_part(&mut self, at_s: f64) {
         match self.state {
             State::Pause(part) => self.go(State::Exposure(part)),
-            State::Exposure(part) if part + 1 < Picture::all_of(self.rules.layout).len() => {
+            State::Exposure(part) if part + 1 < self.pictures().len() => {
                 self.go(State::Pause(part + 1));
             }
             State::Exposure(_) => self.go(State::Rating),
@@ -384,6 +451,7 @@ impl Session {
 
     /// Begins the present trial, or says before it that the practice is over.
     fn enter_trial(&mut self, at_s: f64) {
+        self.showings = 0;
         let phase_of = |index: usize| self.trials.get(index).map(|trial| trial.phase);
         let before = self.trial.checked_sub(1).and_then(phase_of);
         match phase_of(self.trial) {
@@ -398,6 +466,8 @@ impl Session {
             started_s: at_s,
             ..Exposed::default()
         };
+        self.showings += 1;
+        self.response = Response::default();
         self.go(State::Pause(0));
     }
 
@@ -406,87 +476,27 @@ impl Session {
         self.enter_trial(at_s);
     }
 
-    fn push(&mut self, button: Button, at_s: f64) {
-        if let Some(state) = self.asking {
-            match button {
-                Button::Continue => self.go_on(state, at_s),
-                Button::Stop => self.go(State::Over(Ending::Stopped)),
-                Button::Rating(_) => return,
-            }
-            self.asking = None;
-            return;
-        }
-        match (self.state, button) {
-            (State::Instructions, Button::Continue) => self.enter_trial(at_s),
-            (State::PracticeOver, Button::Continue) => self.begin_trial(at_s),
-            (State::Rating, Button::Rating(rating)) => self.rate(rating, at_s),
-            (State::Thanks, Button::Continue) => self.go(State::Over(Ending::Complete)),
-            _ => {}
-        }
-    }
-
-    /// Goes on after all: with the trial from its beginning, unless its images were seen to the end.
-    fn go_on(&mut self, state: State, at_s: f64) {
-        match state {
-            State::Pause(_) | State::Exposure(_) => self.begin_trial(at_s),
-            seen => self.go(seen),
-        }
-    }
-
-    fn key(&mut self, key: Key, at_s: f64) {
-        match key {
-            Key::Escape if self.asking.is_some() => self.push(Button::Continue, at_s),
-            Key::Escape => match self.state {
-                State::Thanks => self.go(State::Over(Ending::Complete)),
-                State::Saving(_) | State::Over(_) => {}
-                state => {
-                    self.asking = Some(state);
-                    self.view = View::default();
-                }
-            },
-            Key::Enter if self.is_rating() => match self.typed.parse() {
-                Ok(rating) if self.rules.scale.contains(rating) => self.rate(rating, at_s),
-                _ => self.typed.clear(),
-            },
-            Key::Backspace if self.is_rating() => {
-                self.typed.pop();
-            }
-            Key::Character(character) if self.is_rating() => self.type_character(character),
-            Key::Enter | Key::Character(' ') => self.push(Button::Continue, at_s),
-            Key::Backspace | Key::Character(_) => {}
-        }
-    }
-
-    fn is_rating(&self) -> bool {
-        self.asking.is_none() && self.state == State::Rating
-    }
-
-    /// Adds a digit, or the sign of a scale that goes below zero. A number off the scale can be typed but
-    /// not entered, so that a digit too many never turns it into another rating.
-    fn type_character(&mut self, character: char) {
-        let is_sign = character == '-' && self.typed.is_empty() && self.rules.scale.lowest < 0;
-        if (character.is_ascii_digit() || is_sign) && self.typed.len() < MOST_TYPED {
-            self.typed.push(character);
-        }
-    }
-
-    fn rate(&mut self, rating: i32, at_s: f64) {
+    /// The answer waits to be put on disk, if its images have come and gone.
+    fn wait_for_disk(&mut self, given: Given) {
         let exposed = self.exposed;
         let (Some(onset_s), Some(offset_s)) = (exposed.onset_s, exposed.offset_s) else {
             return;
         };
-        let (Some(scale_s), Some(_)) = (exposed.scale_s, self.view.shown_s) else {
-            return;
+        let [one, another] = given.marks;
+        let first = self.trials.get(self.trial).map(|trial| trial.first);
+        let (test, reference) = match first {
+            Some(First::Reference) => (another, one),
+            _ => (one, another),
         };
-        if !self.rules.scale.contains(rating) {
-            return;
-        }
+        let Some(rating) = test else { return };
         self.go(State::Saving(Answer {
             trial: self.trial,
             rating,
-            response_time_s: at_s - scale_s,
+            reference_rating: reference,
+            response_time_s: given.response_time_s,
             exposure_submitted_s: offset_s - onset_s,
             missed_frames: exposed.missed_frames,
+            showings: self.showings,
             started_s: exposed.started_s,
         }));
     }

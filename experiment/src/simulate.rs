@@ -135,7 +135,7 @@ impl Simulation<'_> {
             observer: Observer::Simulated,
             pilot_speed: None,
         };
-        let trials = trials(&self.study.protocol, &subject, key.session_id);
+        let trials = trials(self.study, &subject, key.session_id)?;
         let observer = SimulatedObserver::new(&self.study.protocol, &subject, self.seed);
         let traits = observer.traits();
         let session = observer.sit(&trials, self.qualities)?;

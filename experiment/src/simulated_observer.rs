@@ -11,7 +11,10 @@ use protocols::{InputError, ModelObserver, NormalParameter, Protocol, StimulusId
 
 use crate::random::Random;
 use crate::sidecar::ModelTraits;
-use crate::{Answer, Button, Event, ExperimentError, Key, Quality, Rules, Screen, Session, Trial};
+use crate::{
+    Answer, Button, Event, ExperimentError, First, Key, Quality, Response, Rules, Screen, Session,
+    Trial,
+};
 
 /// The virtual screen's frame time.
 const FRAME_S: f64 = 1.0 / 60.0;
@@ -22,6 +25,7 @@ pub(crate) struct SimulatedObserver {
     subject: SubjectId,
     model: ModelObserver,
     rules: Rules,
+    reference: StimulusId,
     traits: ModelTraits,
     random: Random,
 }
@@ -44,6 +48,7 @@ impl SimulatedObserver {
             subject: subject.clone(),
             model,
             rules: Rules::of(&protocol.session),
+            reference: protocol.stimuli.ten_anchor(),
             traits: ModelTraits { seed, bias, gain },
             random,
         }
@@ -63,7 +68,7 @@ impl SimulatedObserver {
         let mut answers = Vec::new();
         let mut now_s = 0.0;
         // Text screens, pauses and exposures, twice over, at 60 frames a second.
-        let per_trial_s = 4.0 * (self.rules.exposure_s + self.rules.pause_s + 1.0);
+        let per_trial_s = 10.0 * (self.rules.exposure_s + self.rules.pause_s + 1.0);
         let most_frames = 60.0 * (per_trial_s * 2.0 * (trials.len() + 2) as f64);
         let mut frames = 0.0;
         while session.ending().is_none() {
@@ -75,24 +80,24 @@ impl SimulatedObserver {
                     subject: self.subject,
                 });
             }
-            if session.needs_frames() && session.to_save().is_none() {
+            let is_waiting = match session.screen() {
+                Screen::Rating => !session.is_shown(),
+                _ => session.needs_frames(),
+            };
+            if is_waiting && session.to_save().is_none() {
                 continue;
             }
-            match session.screen() {
-                Screen::Rating => {
-                    let trial = &trials[session.rated()];
-                    now_s +=
-                        libm::exp(draw(&mut self.random, self.model.ln_response_time)) - FRAME_S;
-                    let button = Some(Button::Rating(self.rating(trial, qualities)?));
-                    session.on(Event::Press(button), now_s);
-                    session.on(Event::Release(button), now_s);
-                    answers.extend(session.to_save().copied());
-                    session.on(Event::Saved, now_s);
-                }
-                Screen::Instructions | Screen::PracticeOver | Screen::Thanks => {
-                    session.on(Event::Key(Key::Enter), now_s);
-                }
-                Screen::Blank | Screen::Exposure(..) | Screen::ConfirmStop => {}
+            if let Some(answer) = session.to_save().copied() {
+                answers.push(answer);
+                session.on(Event::Saved, now_s);
+            } else if session.screen() == Screen::Rating {
+                let trial = &trials[session.rated()];
+                now_s += libm::exp(draw(&mut self.random, self.model.ln_response_time)) - FRAME_S;
+                self.answer(&mut session, trial, qualities, now_s)?;
+                answers.extend(session.to_save().copied());
+                session.on(Event::Saved, now_s);
+            } else if session.screen().picture().is_none() {
+                session.on(Event::Key(Key::Enter), now_s);
             }
         }
         Ok(SimulatedSession {
@@ -101,12 +106,41 @@ impl SimulatedObserver {
         })
     }
 
-    fn rating(
+    /// Answers by a click, or by a number for each bar in the order of the pictures.
+    fn answer(
         &mut self,
+        session: &mut Session,
         trial: &Trial,
         qualities: &BTreeMap<StimulusId, Quality>,
+        at_s: f64,
+    ) -> Result<(), InputError> {
+        let rating = self.rating(&trial.stimulus_id, qualities)?;
+        let mut marks = vec![rating];
+        if self.rules.marks() == 2 {
+            let reference = self.rating(&self.reference.clone(), qualities)?;
+            let first = usize::from(trial.first == First::Test);
+            marks.insert(first, reference);
+        }
+        let click = |session: &mut Session, button: Button| {
+            session.on(Event::Press(Some(button)), at_s);
+            session.on(Event::Release(Some(button)), at_s);
+        };
+        if !Response::has_bars(self.rules.response) {
+            click(session, Button::Rating(rating));
+            return Ok(());
+        }
+        for (bar, mark) in marks.into_iter().enumerate() {
+            click(session, Button::Bar(bar, mark));
+        }
+        click(session, Button::Continue);
+        Ok(())
+    }
+
+    fn rating(
+        &mut self,
+        id: &StimulusId,
+        qualities: &BTreeMap<StimulusId, Quality>,
     ) -> Result<i32, InputError> {
-        let id = &trial.stimulus_id;
         let quality = qualities.get(id).ok_or_else(|| {
             InputError::new(
                 "manifest.json",

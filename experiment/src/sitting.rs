@@ -101,7 +101,7 @@ impl Sitting {
         };
         let data_set = DataSet::new(&options.data_dir, &study.protocol.study);
         data_set_files::prepare(&data_set, study, Observer::Person)?;
-        let trials = trials(&study.protocol, &key.subject_id, key.session_id);
+        let trials = trials(study, &key.subject_id, key.session_id)?;
         let log = RatingsLog::open(&data_set, &key, &trials)?;
         if log.rated() == trials.len() {
             let found = format!("all {} trials rated", trials.len());

@@ -2,9 +2,11 @@
 
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
-use experiment::{Button, Ending, Event, Key, Picture, Rules, Screen, Session, Trial};
+use experiment::{
+    Button, Ending, Event, First, Key, Noted, Picture, Rules, Screen, Session, Trial,
+};
 use protocols::rating::Phase;
-use protocols::{Layout, Scale};
+use protocols::{Layout, RatingTime, ResponseStyle, Scale};
 
 const FLANKING: Rules = Rules {
     layout: Layout::Flanking,
@@ -14,6 +16,10 @@ const FLANKING: Rules = Rules {
         lowest: 0,
         highest: 10,
     },
+    response: ResponseStyle::Buttons,
+    rating: RatingTime::AfterExposure,
+    shortest_response_s: 0.0,
+    longest_response_s: f64::INFINITY,
 };
 
 fn trial(index: u32, phase: Phase) -> Trial {
@@ -22,6 +28,7 @@ fn trial(index: u32, phase: Phase) -> Trial {
         phase,
         stimulus_id: format!("image-{index}").try_into().unwrap(),
         repetition: 1,
+        first: First::Test,
         levels: Vec::new(),
     }
 }
@@ -185,7 +192,7 @@ fn a_rating_during_the_exposure_is_not_taken() {
     screening.key(Key::Enter);
     assert!(matches!(screening.session.screen(), Screen::Exposure(0, _)));
     screening.until_scale();
-    assert_eq!(screening.session.typed(), "");
+    assert_eq!(screening.session.response().typed(), "");
     assert_eq!(screening.session.to_save(), None);
 }
 
@@ -245,13 +252,13 @@ fn ten_is_typed_as_one_and_nought_and_what_is_off_the_scale_is_never_another_rat
     screening.until_scale();
     for off_scale in ["12", "77", "011", ""] {
         screening.type_all(off_scale);
-        assert_eq!(screening.session.typed(), off_scale);
+        assert_eq!(screening.session.response().typed(), off_scale);
         screening.key(Key::Enter);
         assert_eq!(screening.session.to_save(), None, "{off_scale}");
-        assert_eq!(screening.session.typed(), "");
+        assert_eq!(screening.session.response().typed(), "");
     }
     screening.type_all("x-1.1");
-    assert_eq!(screening.session.typed(), "11");
+    assert_eq!(screening.session.response().typed(), "11");
     screening.key(Key::Backspace);
     screening.type_all("0");
     screening.key(Key::Enter);
@@ -360,7 +367,7 @@ fn a_session_that_is_stopped_keeps_its_ratings_and_goes_no_further() {
 #[test]
 fn a_resumed_session_goes_on_with_the_next_trial() {
     let mut screening = Screening::resumed(FLANKING, 2);
-    assert_eq!(screening.session.screen(), Screen::Instructions);
+    assert_eq!(screening.session.screen(), Screen::Resumed);
     screening.click(Button::Continue);
     screening.until_exposure();
     assert_eq!(
@@ -398,4 +405,272 @@ fn a_sequence_shows_zero_anchor_test_image_and_ten_anchor_one_after_another() {
         (exposure_s - 2.0).abs() < 0.02,
         "that of the test image alone: {exposure_s}"
     );
+}
+
+const PAIR: Rules = Rules {
+    layout: Layout::Dscqs,
+    response: ResponseStyle::Continuous,
+    scale: Scale {
+        lowest: 0,
+        highest: 100,
+    },
+    ..FLANKING
+};
+
+#[test]
+fn a_single_stimulus_is_shown_alone_and_an_impairment_after_its_reference() {
+    for (layout, pictures) in [
+        (Layout::Single, vec![Picture::Test]),
+        (Layout::Dsis, vec![Picture::TenAnchor, Picture::Test]),
+    ] {
+        let mut screening = Screening::new(Rules { layout, ..FLANKING });
+        screening.click(Button::Continue);
+        for picture in pictures {
+            screening.until_exposure();
+            assert_eq!(screening.session.screen(), Screen::Exposure(0, picture));
+            screening.until(|screen| !matches!(screen, Screen::Exposure(..)));
+        }
+        screening.until_scale();
+        screening.click(Button::Rating(4));
+        assert_eq!(screening.session.to_save().unwrap().rating, 4);
+    }
+}
+
+/// A pair of which the reference comes first, if `first` says so, up to the scale.
+fn pair(first: First) -> Screening {
+    let mut trials = three_trials();
+    trials[0].first = first;
+    let mut screening = Screening::new(PAIR);
+    screening.session = Session::new(trials, 0, PAIR);
+    screening.frames(2);
+    screening.click(Button::Continue);
+    screening
+}
+
+#[test]
+fn a_pair_is_shown_twice_and_both_are_rated_whichever_comes_first() {
+    for (first, order, rating, reference) in [
+        (First::Test, [Picture::Test, Picture::TenAnchor], 30, 80),
+        (
+            First::Reference,
+            [Picture::TenAnchor, Picture::Test],
+            80,
+            30,
+        ),
+    ] {
+        let mut screening = pair(first);
+        for picture in [order, order].concat() {
+            screening.until_exposure();
+            assert_eq!(screening.session.screen(), Screen::Exposure(0, picture));
+            screening.until(|screen| !matches!(screen, Screen::Exposure(..)));
+        }
+        screening.until_scale();
+        screening.click(Button::Bar(0, 30));
+        screening.click(Button::Bar(1, 80));
+        screening.click(Button::Continue);
+        let answer = screening.session.to_save().unwrap();
+        assert_eq!(
+            (answer.rating, answer.reference_rating),
+            (rating, Some(reference))
+        );
+        assert!(
+            (answer.exposure_submitted_s - 2.0).abs() < 0.02,
+            "one showing"
+        );
+    }
+}
+
+#[test]
+fn bars_are_entered_only_when_every_one_is_marked_and_none_is_to_begin_with() {
+    let mut screening = pair(First::Test);
+    screening.until_scale();
+    assert_eq!(screening.session.response().marks(), [None, None]);
+    screening.click(Button::Continue);
+    screening.key(Key::Up);
+    screening.click(Button::Bar(1, 55));
+    screening.click(Button::Continue);
+    screening.key(Key::Enter);
+    assert_eq!(screening.session.to_save(), None);
+    assert_eq!(screening.session.response().marks(), [None, Some(55)]);
+    screening.click(Button::Bar(0, 101));
+    assert_eq!(screening.session.response().marks(), [None, Some(55)]);
+    screening.click(Button::Bar(0, 100));
+    screening.click(Button::Continue);
+    let answer = screening.session.to_save().unwrap();
+    assert_eq!((answer.rating, answer.reference_rating), (100, Some(55)));
+}
+
+#[test]
+fn a_mark_follows_the_pointer_while_it_is_held_and_only_on_its_own_bar() {
+    let mut screening = pair(First::Test);
+    screening.until_scale();
+    screening.on(Event::Press(Some(Button::Bar(0, 10))));
+    screening.on(Event::Drag(Some(Button::Bar(0, 20))));
+    screening.on(Event::Drag(Some(Button::Bar(1, 60))));
+    screening.on(Event::Drag(None));
+    screening.on(Event::Release(None));
+    screening.on(Event::Drag(Some(Button::Bar(0, 70))));
+    assert_eq!(screening.session.response().marks(), [Some(20), None]);
+}
+
+#[test]
+fn bars_can_be_marked_by_keys_alone() {
+    let mut screening = pair(First::Test);
+    screening.until_scale();
+    screening.type_all("42");
+    screening.key(Key::Enter);
+    screening.type_all("7");
+    screening.key(Key::Enter);
+    screening.key(Key::Down);
+    screening.key(Key::Tab);
+    screening.key(Key::Up);
+    assert_eq!(screening.session.response().marks(), [Some(43), Some(6)]);
+    screening.key(Key::Enter);
+    let answer = screening.session.to_save().unwrap();
+    assert_eq!((answer.rating, answer.reference_rating), (43, Some(6)));
+}
+
+#[test]
+fn an_answer_during_the_exposure_ends_it_and_its_length_is_what_was_shown() {
+    let mut screening = Screening::new(Rules {
+        layout: Layout::Single,
+        rating: RatingTime::DuringExposure,
+        ..FLANKING
+    });
+    screening.click(Button::Continue);
+    screening.until(|screen| screen == Screen::RatedExposure(0, Picture::Test));
+    screening.click(Button::Rating(3));
+    assert_eq!(
+        screening.session.to_save(),
+        None,
+        "its frame is not submitted yet"
+    );
+    // Half a second at 60 frames a second.
+    screening.frames(30);
+    screening.click(Button::Rating(3));
+    screening.frames(2);
+    let answer = *screening.session.to_save().unwrap();
+    assert_eq!(answer.rating, 3);
+    assert!(
+        (answer.exposure_submitted_s - 0.55).abs() < 0.06,
+        "{answer:?}"
+    );
+    assert!(answer.response_time_s < answer.exposure_submitted_s);
+    screening.saved();
+    screening.click(Button::Continue);
+    screening.until(|screen| matches!(screen, Screen::RatedExposure(1, _)));
+    screening.type_all("1");
+    screening.until(|screen| screen == Screen::Rating);
+    screening.frames(2);
+    screening.type_all("0");
+    screening.key(Key::Enter);
+    screening.frames(2);
+    let answer = screening.session.to_save().unwrap();
+    assert_eq!(
+        answer.rating, 0,
+        "keys before the frame with the scale do not count"
+    );
+    assert!((answer.exposure_submitted_s - 2.0).abs() < 0.02);
+}
+
+fn noted(screening: &mut Screening) -> Vec<Noted> {
+    let notes = screening.session.take_notes();
+    notes.into_iter().map(|note| note.event).collect()
+}
+
+#[test]
+fn an_answer_too_soon_is_not_taken_and_noted() {
+    let mut screening = Screening::new(Rules {
+        shortest_response_s: 0.3,
+        ..FLANKING
+    });
+    screening.click(Button::Continue);
+    screening.until_scale();
+    screening.frames(6);
+    screening.click(Button::Rating(3));
+    assert_eq!(screening.session.to_save(), None);
+    assert_eq!(noted(&mut screening), [Noted::TooSoon]);
+    screening.frames(20);
+    screening.click(Button::Rating(4));
+    assert_eq!(screening.session.to_save().unwrap().rating, 4);
+}
+
+#[test]
+fn without_an_answer_in_time_the_pictures_are_shown_again_and_both_showings_count() {
+    let mut screening = Screening::new(Rules {
+        longest_response_s: 1.0,
+        ..FLANKING
+    });
+    screening.click(Button::Continue);
+    screening.until_scale();
+    assert!(
+        screening.session.needs_frames(),
+        "so that the time can run out"
+    );
+    screening.until(|screen| screen == Screen::TooSlow);
+    screening.frames(2);
+    screening.click(Button::Rating(3));
+    assert_eq!(screening.session.to_save(), None);
+    assert_eq!(noted(&mut screening), [Noted::TooLate]);
+    screening.click(Button::Continue);
+    screening.until_exposure();
+    screening.until_scale();
+    screening.click(Button::Rating(5));
+    let answer = screening.session.to_save().unwrap();
+    assert_eq!((answer.rating, answer.showings), (5, 2));
+    assert!(answer.response_time_s < 1.0);
+}
+
+#[test]
+fn the_pause_key_and_stray_clicks_are_noted_with_their_time() {
+    let mut screening = Screening::new(FLANKING);
+    screening.click(Button::Continue);
+    screening.until_exposure();
+    screening.frames(10);
+    screening.on(Event::Press(None));
+    screening.on(Event::Release(None));
+    screening.key(Key::Pause);
+    assert_eq!(screening.session.screen(), Screen::Paused);
+    screening.click(Button::Stop);
+    assert_eq!(screening.session.screen(), Screen::Paused);
+    let paused_s = screening.now_s;
+    screening.click(Button::Continue);
+    screening.until_scale();
+    let notes = screening.session.take_notes();
+    let events: Vec<_> = notes.iter().map(|note| note.event).collect();
+    assert_eq!(
+        events,
+        [
+            Noted::StrayClick,
+            Noted::Pause,
+            Noted::GoneOn,
+            Noted::ExposureInterrupted
+        ]
+    );
+    assert!(notes[1].at_s <= paused_s && notes[2].at_s >= paused_s);
+}
+
+/// Every frame that was drawn is in the log, with its time: the log is judged by a plain list.
+#[test]
+fn the_frame_log_holds_every_frame() {
+    let mut screening = Screening::new(FLANKING);
+    screening.session.take_frames();
+    screening.click(Button::Continue);
+    let before = screening.now_s;
+    screening.until_scale();
+    let log = screening.session.take_frames();
+    let count: usize = log
+        .runs()
+        .iter()
+        .map(|run| run.intervals_us.len() + 1)
+        .sum();
+    let frames = ((screening.now_s - before) / screening.frame_s).round();
+    let logged = count as f64;
+    assert!((logged - frames).abs() <= 2.0, "{logged} of {frames}");
+    let words: Vec<_> = log.runs().iter().map(|run| run.screen).collect();
+    assert!(words.ends_with(&["grey", "flanked", "scale"]), "{words:?}");
+    let exposure = &log.runs()[words.len() - 2];
+    let long_us: u64 = exposure.intervals_us.iter().sum();
+    // 2 s less the frame that ends it: the interval to the first frame of the scale is not in the run.
+    assert!((1_960_000..2_000_000).contains(&long_us), "{long_us}");
 }

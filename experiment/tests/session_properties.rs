@@ -2,10 +2,10 @@
 
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
-use experiment::{Answer, Button, Event, Key, Picture, Rules, Screen, Session, Trial};
+use experiment::{Answer, Button, Event, First, Key, Picture, Rules, Screen, Session, Trial};
 use proptest::prelude::*;
 use protocols::rating::Phase;
-use protocols::{Layout, Scale};
+use protocols::{Layout, RatingTime, ResponseStyle, Scale};
 
 const EXPOSURE_S: f64 = 0.2;
 const LONGEST_FRAME_S: f64 = 0.05;
@@ -140,6 +140,7 @@ fn session(layout: Layout) -> Session {
             phase,
             stimulus_id: "image".to_owned().try_into().unwrap(),
             repetition: 1,
+            first: First::Test,
             levels: Vec::new(),
         })
         .collect();
@@ -148,6 +149,26 @@ fn session(layout: Layout) -> Session {
         exposure_s: EXPOSURE_S,
         pause_s: 0.05,
         scale: SCALE,
+        response: ResponseStyle::Buttons,
+        rating: RatingTime::AfterExposure,
+        shortest_response_s: 0.0,
+        longest_response_s: f64::INFINITY,
+    };
+    Session::new(trials, 0, rules)
+}
+
+/// The same with pairs, both rated on bars.
+fn pairs() -> Session {
+    let trials = session(Layout::Dscqs).trials().to_vec();
+    let rules = Rules {
+        response: ResponseStyle::Continuous,
+        layout: Layout::Dscqs,
+        exposure_s: EXPOSURE_S,
+        pause_s: 0.05,
+        scale: SCALE,
+        rating: RatingTime::AfterExposure,
+        shortest_response_s: 0.0,
+        longest_response_s: f64::INFINITY,
     };
     Session::new(trials, 0, rules)
 }
@@ -156,7 +177,7 @@ fn check(happenings: &[Happening], layout: Layout) -> Result<usize, TestCaseErro
     let mut session = session(layout);
     let picture = match layout {
         Layout::Flanking => Picture::Flanked,
-        Layout::Sequence => Picture::Test,
+        _ => Picture::Test,
     };
     let mut record = Record::default();
     for &happening in happenings {
@@ -212,6 +233,56 @@ proptest! {
     #[test]
     fn the_same_holds_for_a_sequence(happenings in happenings()) {
         check(&happenings, Layout::Sequence)?;
+    }
+
+    #[test]
+    fn of_pairs_exactly_what_was_marked_is_the_answer(happenings in happenings()) {
+        check_pairs(&happenings)?;
+    }
+}
+
+/// A session of pairs with bars: the answers are the marks, and nothing but a click or Enter gives them.
+fn check_pairs(happenings: &[Happening]) -> Result<usize, TestCaseError> {
+    let mut session = pairs();
+    let mut now_s = 0.0;
+    let mut saved = 0;
+    for &happening in happenings {
+        let (before, marks) = (session.to_save().copied(), session.response().marks());
+        match happening {
+            Happening::Frames(count, dt_s) => (0..count).for_each(|_| {
+                now_s += dt_s;
+                session.on(Event::Frame, now_s);
+            }),
+            Happening::Press(button) => session.on(Event::Press(button.map(on_bar)), now_s),
+            Happening::Release(button) => session.on(Event::Release(button.map(on_bar)), now_s),
+            Happening::Key(key) => session.on(Event::Key(key), now_s),
+            Happening::Saved => {
+                session.on(Event::Saved, now_s);
+                saved += usize::from(before.is_some());
+            }
+        }
+        if let (None, Some(answer)) = (before, session.to_save()) {
+            prop_assert_eq!([Some(answer.rating), answer.reference_rating], marks);
+            prop_assert_eq!(answer.trial, saved);
+            prop_assert!(answer.exposure_submitted_s >= EXPOSURE_S - 1.5 * LONGEST_FRAME_S);
+        }
+        if matches!(session.screen(), Screen::Exposure(..) | Screen::Blank) {
+            prop_assert_eq!(
+                session.response().marks(),
+                [None; 2],
+                "nothing is preselected"
+            );
+        }
+        prop_assert_eq!(session.rated(), saved);
+    }
+    Ok(saved)
+}
+
+/// Numbers become places on the bars: even ones on the first.
+fn on_bar(button: Button) -> Button {
+    match button {
+        Button::Rating(rating) => Button::Bar(usize::from(rating % 2 != 0), rating),
+        other => other,
     }
 }
 

@@ -32,6 +32,27 @@ pub enum Phase {
     Test,
 }
 
+/// Which picture of a pair came first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShownFirst {
+    /// The test image.
+    Test,
+    /// The reference.
+    Reference,
+}
+
+impl ShownFirst {
+    const fn as_str(self) -> &'static str {
+        match self {
+            Self::Test => "test",
+            Self::Reference => "reference",
+        }
+    }
+}
+
+/// What stands in a column that does not apply.
+const NOT_APPLICABLE: &str = "n/a";
+
 /// One trial as it was shown and rated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RatingRow {
@@ -51,6 +72,10 @@ pub struct RatingRow {
     pub levels: Vec<String>,
     /// The answer.
     pub rating: i32,
+    /// The rating of the reference, where both pictures of a pair are rated.
+    pub reference_rating: Option<i32>,
+    /// Which picture of a pair came first, where the order is by lot: `test` or `reference`.
+    pub shown_first: Option<ShownFirst>,
     /// From the first frame with the scale to the answer.
     pub response_time_s: f64,
     /// For how long the protocol wants the images shown.
@@ -59,6 +84,8 @@ pub struct RatingRow {
     pub exposure_submitted_s: f64,
     /// Frames that came later than one and a half frame times after the one before, while the image stood.
     pub missed_frames: u32,
+    /// How often the trial was begun: more than once if it was interrupted or answered too late.
+    pub showings: u32,
     /// When the trial began: UTC, ISO 8601.
     pub started_at: String,
     /// A person or a model.
@@ -88,11 +115,21 @@ const BEFORE_FACTORS: [(&str, Option<&str>, &str); 6] = [
         "how-manieth time in this phase that the subject sees this stimulus, from 1",
     ),
 ];
-const AFTER_FACTORS: [(&str, Option<&str>, &str); 8] = [
+const AFTER_FACTORS: [(&str, Option<&str>, &str); 11] = [
     (
         "rating",
         None,
         "quality on the scale of the protocol, higher is better",
+    ),
+    (
+        "reference_rating",
+        None,
+        "rating of the reference where both pictures of a pair are rated, else n/a",
+    ),
+    (
+        "shown_first",
+        None,
+        "picture of a pair that came first by lot: test or reference; else n/a",
     ),
     (
         "response_time_s",
@@ -113,6 +150,11 @@ const AFTER_FACTORS: [(&str, Option<&str>, &str); 8] = [
         "missed_frames",
         None,
         "frames later than one and a half frame times after the one before, during the exposure",
+    ),
+    (
+        "showings",
+        None,
+        "how often the trial was begun; more than 1 if it was interrupted or answered too late",
     ),
     ("started_at", None, "start of the trial, UTC, ISO 8601"),
     ("observer", None, "person or simulated"),
@@ -166,12 +208,18 @@ impl RatingRow {
             self.stimulus_id.to_string(),
             self.repetition.to_string(),
         ];
+        let reference = self.reference_rating.map(|rating| rating.to_string());
+        let first = self.shown_first.map(|first| first.as_str().to_owned());
+        let or_not = |text: Option<String>| text.unwrap_or_else(|| NOT_APPLICABLE.to_owned());
         let after = [
             self.rating.to_string(),
+            or_not(reference),
+            or_not(first),
             format!("{:.4}", self.response_time_s),
             format!("{:.4}", self.exposure_requested_s),
             format!("{:.4}", self.exposure_submitted_s),
             self.missed_frames.to_string(),
+            self.showings.to_string(),
             self.started_at.clone(),
             self.observer.as_str().to_owned(),
             self.pilot.to_string(),
@@ -355,10 +403,27 @@ impl Fields<'_> {
             repetition: self.number("repetition")?,
             levels: levels.collect::<Result<_, _>>()?,
             rating: self.value("rating", "a whole number", |text| text.parse().ok())?,
+            reference_rating: self.value("reference_rating", "a whole number or n/a", |text| {
+                match text {
+                    NOT_APPLICABLE => Some(None),
+                    number => number.parse().ok().map(Some),
+                }
+            })?,
+            shown_first: self.value(
+                "shown_first",
+                "test, reference or n/a",
+                |text| match text {
+                    NOT_APPLICABLE => Some(None),
+                    "test" => Some(Some(ShownFirst::Test)),
+                    "reference" => Some(Some(ShownFirst::Reference)),
+                    _ => None,
+                },
+            )?,
             response_time_s: self.seconds("response_time_s")?,
             exposure_requested_s: self.seconds("exposure_requested_s")?,
             exposure_submitted_s: self.seconds("exposure_submitted_s")?,
             missed_frames: self.number("missed_frames")?,
+            showings: self.number("showings")?,
             started_at: self.text("started_at")?.to_owned(),
             observer: self.value("observer", "person or simulated", |text| match text {
                 "person" => Some(Observer::Person),

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::StimulusId;
+use crate::{OrderPlan, RatingTime, ResponseStyle, StimulusId};
 
 /// How the images are shown and rated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -20,12 +20,31 @@ pub struct SessionPlan {
     pub background_srgb: u8,
     /// The rating scale.
     pub scale: Scale,
+    /// The form of the scale.
+    #[serde(default)]
+    pub response: ResponseStyle,
+    /// When the scale is there.
+    #[serde(default)]
+    pub rating: RatingTime,
+    /// An answer sooner than this after the scale came is not taken.
+    #[serde(default)]
+    pub shortest_response_s: Option<f64>,
+    /// Without an answer by then the pictures are shown again.
+    #[serde(default)]
+    pub longest_response_s: Option<f64>,
+    /// Whether a corner of the screen is white while the test image stands, and black otherwise, for a
+    /// photodiode.
+    #[serde(default)]
+    pub photodiode: bool,
     /// The images of the practice trials, in the order in which they come.
     pub practice: Vec<StimulusId>,
     /// How often each image is rated: once in each block.
     pub blocks: u32,
     /// With the subject's id, the seed of the order of trials.
     pub order_seed: u64,
+    /// Which orders are allowed.
+    #[serde(default)]
+    pub order: OrderPlan,
     /// All words that the subject reads.
     pub texts: SessionTexts,
 }
@@ -53,12 +72,74 @@ impl SessionPlan {
                 "a number from 1 to 100",
             ));
         }
+        self.response_fault()
+            .or_else(|| self.response_time_fault())
+            .or_else(|| self.order.fault())
+    }
+
+    fn response_fault(&self) -> Option<(&'static str, String, &'static str)> {
         let Scale { lowest, highest } = self.scale;
-        if !(lowest < highest && i64::from(highest) - i64::from(lowest) <= 20) {
-            let expected = "a lowest rating below the highest, with at most 21 steps";
+        let is_continuous = self.response == ResponseStyle::Continuous;
+        let (most, expected) = if is_continuous {
+            (
+                1000,
+                "a lowest rating below the highest, with at most 1001 steps",
+            )
+        } else {
+            (
+                20,
+                "a lowest rating below the highest, with at most 21 steps",
+            )
+        };
+        if !(lowest < highest && i64::from(highest) - i64::from(lowest) <= most) {
             return Some(("session.scale", format!("{lowest} to {highest}"), expected));
         }
-        None
+        let labels = self.texts.labels.len();
+        if self.response == ResponseStyle::Labelled && labels != self.scale.ratings().count() {
+            let expected = "a word for each rating, from the lowest to the highest";
+            return Some(("session.texts.labels", format!("{labels} words"), expected));
+        }
+        if self.layout == Layout::Dscqs && !is_continuous {
+            let expected = "\"continuous\", which the layout \"dscqs\" needs";
+            return Some(("session.response", format!("{:?}", self.response), expected));
+        }
+        (is_continuous && self.rating == RatingTime::DuringExposure).then(|| {
+            let expected = "\"after-exposure\" with a continuous scale";
+            ("session.rating", "\"during-exposure\"".to_owned(), expected)
+        })
+    }
+
+    fn response_time_fault(&self) -> Option<(&'static str, String, &'static str)> {
+        let is_time = |time: f64| time.is_finite() && (0.0..=3600.0).contains(&time);
+        let shortest_s = self.shortest_response_s.unwrap_or(0.0);
+        if !is_time(shortest_s) {
+            let expected = "a time from 0 to 3600 s";
+            return Some((
+                "session.shortest_response_s",
+                shortest_s.to_string(),
+                expected,
+            ));
+        }
+        let longest_s = self.longest_response_s?;
+        (!is_time(longest_s) || longest_s <= shortest_s).then(|| {
+            let expected = "a time above the shortest and up to 3600 s";
+            (
+                "session.longest_response_s",
+                longest_s.to_string(),
+                expected,
+            )
+        })
+    }
+
+    /// How often an image is rated at most: once in each block, an anchor more often.
+    pub fn most_repetitions(&self) -> u32 {
+        self.blocks * (1 + self.order.anchor_repeats)
+    }
+
+    /// How many trials a session has if a block has `images` different images.
+    pub fn trial_count(&self, images: usize) -> usize {
+        let repeats = 2 * self.order.anchor_repeats as usize;
+        self.practice.len() + (images + repeats) * self.blocks as usize
     }
 }
 
@@ -70,6 +151,13 @@ pub enum Layout {
     Flanking,
     /// Zero anchor, test image, ten anchor, one after another in the centre.
     Sequence,
+    /// The test image alone (absolute category rating, ITU-T P.910).
+    Single,
+    /// The ten anchor as the reference, then the test image (double-stimulus impairment scale, ITU-R BT.500).
+    Dsis,
+    /// Test image and ten anchor, in an order by lot that the subject is not told, twice; both are rated
+    /// (double-stimulus continuous quality scale, ITU-R BT.500).
+    Dscqs,
 }
 
 /// A rating scale of whole numbers, both ends included.
@@ -119,6 +207,21 @@ pub struct SessionTexts {
     pub highest: String,
     /// Shown last.
     pub thanks: String,
+    /// Shown instead of the instructions when a session goes on that was cut off.
+    #[serde(default = "resumed")]
+    pub resumed: String,
+    /// The words of a labelled or continuous scale, from the lowest rating to the highest.
+    #[serde(default)]
+    pub labels: Vec<String>,
+    /// The names of the two pictures of the layout `dscqs`.
+    #[serde(default = "pair")]
+    pub pair: [String; 2],
+    /// Shown when the longest response time is over.
+    #[serde(default = "too_slow")]
+    pub too_slow: String,
+    /// Shown while the session rests (the key P).
+    #[serde(default = "paused")]
+    pub paused: String,
     /// On the button that goes on.
     #[serde(default = "continue_button")]
     pub continue_button: String,
@@ -128,6 +231,22 @@ pub struct SessionTexts {
     /// On the button that stops.
     #[serde(default = "stop_button")]
     pub stop_button: String,
+}
+
+fn resumed() -> String {
+    "The session goes on where it stopped.".to_owned()
+}
+
+fn pair() -> [String; 2] {
+    ["A".to_owned(), "B".to_owned()]
+}
+
+fn too_slow() -> String {
+    "That took too long. The pictures are shown again.".to_owned()
+}
+
+fn paused() -> String {
+    "A rest. Go on when you are ready.".to_owned()
 }
 
 fn continue_button() -> String {

@@ -21,6 +21,19 @@ impl SubjectId {
     pub fn as_str(&self) -> &str {
         &self.0
     }
+
+    /// The number at the end of the code, by which orders are balanced across subjects.
+    ///
+    /// ```
+    /// let number = |code: &str| code.parse::<protocols::SubjectId>().unwrap().number();
+    /// assert_eq!((number("07"), number("A12"), number("AB")), (Some(7), Some(12), None));
+    /// ```
+    pub fn number(&self) -> Option<u32> {
+        let start = self
+            .0
+            .trim_end_matches(|digit: char| digit.is_ascii_digit());
+        self.0[start.len()..].parse().ok()
+    }
 }
 
 impl FromStr for SubjectId {

@@ -34,7 +34,7 @@ fn the_paper_has_28_images_of_which_one_ends_both_sequences() {
 }
 
 /// A value of the protocol, what a user might write instead, and what the message must then name.
-const FAULTS: [(&str, &str, &str); 17] = [
+const FAULTS: [(&str, &str, &str); 24] = [
     ("exposure_s = 10.0", "exposure_sec = 10.0", "exposure_sec"),
     (
         "exposure_s = 10.0",
@@ -63,6 +63,41 @@ const FAULTS: [(&str, &str, &str); 17] = [
         "a011k_c140k",
     ),
     ("lowest = 0\n", "lowest = 10\n", "session.scale"),
+    (
+        "gap_px = 24",
+        "response = \"labelled\"\ngap_px = 24",
+        "session.texts.labels",
+    ),
+    (
+        "layout = \"flanking\"",
+        "layout = \"dscqs\"",
+        "session.response",
+    ),
+    (
+        "gap_px = 24",
+        "response = \"continuous\"\nrating = \"during-exposure\"\ngap_px = 24",
+        "session.rating",
+    ),
+    (
+        "gap_px = 24",
+        "shortest_response_s = 2.0\nlongest_response_s = 1.0\ngap_px = 24",
+        "session.longest_response_s",
+    ),
+    (
+        "[session.scale]",
+        "[[session.order.most_in_a_row]]\nfactor = \"channel\"\nmost = 0\n[session.scale]",
+        "session.order.most_in_a_row",
+    ),
+    (
+        "[session.scale]",
+        "[session.order]\nscheme = \"latin-square\"\nanchor_repeats = 1\n[session.scale]",
+        "session.order.scheme",
+    ),
+    (
+        "[session.scale]",
+        "[session.order.blocked_by]\nfactor = \"channel\"\nlevels = [\"achromatic\"]\n[session.scale]",
+        "session.order.blocked_by.levels",
+    ),
     (
         "within = [\"channel\", \"rays\"]",
         "within = [\"channel\", \"channel\"]",

@@ -63,7 +63,7 @@ impl Place {
                     sitting.session.on(Event::Release(button), at_s);
                     sitting.save(at_s).unwrap();
                 }
-                Screen::Instructions | Screen::PracticeOver => {
+                Screen::Instructions | Screen::Resumed | Screen::PracticeOver => {
                     sitting.session.on(Event::Key(Key::Enter), at_s);
                 }
                 _ => {}
@@ -119,7 +119,7 @@ fn a_session_that_was_cut_off_goes_on_and_has_every_trial_once() {
     for count in [2, 1, 0, 9, 18] {
         place.rate(count);
     }
-    let order = trials(&place.study.protocol, &place.options.subject, 1);
+    let order = trials(&place.study, &place.options.subject, 1).unwrap();
     let rows = place.rows();
     assert_eq!(rows.len(), 30);
     for (row, trial) in rows.iter().zip(&order) {

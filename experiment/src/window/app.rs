@@ -74,7 +74,7 @@ impl SessionApp {
         }
 
         let screen = self.sitting.session.screen();
-        let mut events = input::events(context, geometry, screen, self.show.plan.scale);
+        let mut events = input::events(context, geometry, screen, &self.show.plan);
         if context.input(|input| input.viewport().close_requested()) {
             context.send_viewport_cmd(ViewportCommand::CancelClose);
             events.extend((screen != Screen::ConfirmStop).then_some(Event::Key(Key::Escape)));
@@ -85,8 +85,8 @@ impl SessionApp {
         }
         let session = &mut self.sitting.session;
         session.on(Event::Frame, now_s);
-        if matches!(screen, Screen::Exposure(..)) && session.screen() == Screen::Rating {
-            let rest = geometry.pointer_rest();
+        if !screen.has_scale() && session.screen().has_scale() {
+            let rest = geometry.pointer_rest(&self.show.plan);
             context.send_viewport_cmd(ViewportCommand::CursorPosition(rest));
         }
         if let Some(ending) = session.ending() {

@@ -4,7 +4,7 @@
 //! images never do.
 
 use eframe::egui::{Pos2, Rect, Vec2, pos2, vec2};
-use protocols::{Scale, SessionPlan};
+use protocols::{Layout, RatingTime, ResponseStyle, SessionPlan};
 
 use crate::{Button, Picture, Screen};
 
@@ -26,15 +26,18 @@ pub(crate) enum Slot {
 /// How many pixels the images of one screen need.
 pub(crate) fn needed_px(plan: &SessionPlan, image_px: [u32; 2]) -> [u32; 2] {
     let [width, height] = image_px;
-    match plan.layout {
-        protocols::Layout::Flanking => [
-            width
-                .saturating_mul(3)
-                .saturating_add(plan.gap_px.saturating_mul(2)),
-            height,
-        ],
-        protocols::Layout::Sequence => image_px,
-    }
+    let width = match plan.layout {
+        Layout::Flanking => width
+            .saturating_mul(3)
+            .saturating_add(plan.gap_px.saturating_mul(2)),
+        Layout::Sequence | Layout::Single | Layout::Dsis | Layout::Dscqs => width,
+    };
+    let height = match plan.rating {
+        RatingTime::AfterExposure => height,
+        // The question stands at 0.78 of the height, with the scale below; the images are in the middle.
+        RatingTime::DuringExposure => height.saturating_mul(2),
+    };
+    [width, height]
 }
 
 /// A rectangle around a centre, with its corners on whole pixels.
@@ -80,18 +83,67 @@ impl Geometry {
     }
 
     /// The buttons of a screen.
-    pub(crate) fn buttons(self, screen: Screen, scale: Scale) -> Vec<(Button, Rect)> {
+    pub(crate) fn buttons(self, screen: Screen, plan: &SessionPlan) -> Vec<(Button, Rect)> {
         match screen {
-            Screen::Instructions | Screen::PracticeOver => {
-                vec![(Button::Continue, self.wide_button(0.5, 0.86))]
-            }
+            Screen::Instructions
+            | Screen::Resumed
+            | Screen::PracticeOver
+            | Screen::TooSlow
+            | Screen::Paused => vec![(Button::Continue, self.wide_button(0.5, 0.86))],
             Screen::ConfirmStop => vec![
                 (Button::Continue, self.wide_button(0.39, 0.56)),
                 (Button::Stop, self.wide_button(0.61, 0.56)),
             ],
-            Screen::Rating => self.ratings(scale),
+            Screen::Rating | Screen::RatedExposure(..) => match plan.response {
+                ResponseStyle::Buttons | ResponseStyle::Labelled => self.ratings(plan),
+                ResponseStyle::Continuous => {
+                    vec![(Button::Continue, self.wide_button(0.5, 0.92))]
+                }
+            },
             Screen::Blank | Screen::Exposure(..) | Screen::Thanks => Vec::new(),
         }
+    }
+
+    /// How high the question and the row of ratings stand, as parts of the screen's height.
+    pub(crate) fn scale_heights(plan: &SessionPlan) -> [f32; 2] {
+        match (plan.response, plan.rating) {
+            (ResponseStyle::Continuous, _) => [0.1, 0.5],
+            (_, RatingTime::AfterExposure) => [0.38, 0.5],
+            (_, RatingTime::DuringExposure) => [0.79, 0.87],
+        }
+    }
+
+    /// The bars of a continuous scale; the best rating is at the top.
+    pub(crate) fn bars(self, plan: &SessionPlan) -> Vec<Rect> {
+        let size_px = vec2(64.0 * self.unit(), 0.56 * self.size_px.y);
+        let places: &[f32] = match plan.layout {
+            Layout::Dscqs => &[-150.0, 150.0],
+            _ => &[0.0],
+        };
+        let middle = self.size_px * vec2(0.5, 0.53);
+        let bar = |&x: &f32| {
+            let centre = middle + vec2(x * self.unit(), 0.0);
+            centred(centre.to_pos2(), size_px)
+        };
+        places.iter().map(bar).collect()
+    }
+
+    /// How high a rating stands on a bar.
+    pub(crate) fn mark_y(bar: Rect, plan: &SessionPlan, rating: i32) -> f32 {
+        let scale = plan.scale;
+        let part = (rating - scale.lowest) as f32 / (scale.highest - scale.lowest) as f32;
+        bar.bottom() - part * bar.height()
+    }
+
+    /// The bar at a place in pixels, and the nearest rating; beside a bar there is some room.
+    fn mark_at(self, plan: &SessionPlan, place: Pos2) -> Option<Button> {
+        let room = vec2(40.0, 24.0) * self.unit();
+        let mut bars = self.bars(plan).into_iter().enumerate();
+        let (index, bar) = bars.find(|(_, bar)| bar.expand2(room).contains(place))?;
+        let part = ((bar.bottom() - place.y) / bar.height()).clamp(0.0, 1.0);
+        let span = f64::from(plan.scale.highest - plan.scale.lowest);
+        let rating = f64::from(plan.scale.lowest) + f64::from(part) * span;
+        Some(Button::Bar(index, plan.scale.nearest(rating)))
     }
 
     fn wide_button(self, x: f32, y: f32) -> Rect {
@@ -99,32 +151,59 @@ impl Geometry {
         centred(centre, vec2(280.0, 76.0) * self.unit())
     }
 
-    fn ratings(self, scale: Scale) -> Vec<(Button, Rect)> {
+    fn ratings(self, plan: &SessionPlan) -> Vec<(Button, Rect)> {
+        let scale = plan.scale;
         let count = scale.ratings().count() as f32;
-        let step = (104.0 * self.unit())
+        let (step, height) = match plan.response {
+            ResponseStyle::Labelled => (232.0, Some(84.0)),
+            _ => (104.0, None),
+        };
+        let step = (step * self.unit())
             .min(0.94 * self.size_px.x / count)
             .round();
-        let side = (step * 0.82).round();
-        let middle = self.size_px.y * 0.5;
+        let side = match height {
+            None => Vec2::splat((step * 0.82).round()),
+            Some(height) => vec2(step * 0.92, height * self.unit()).round(),
+        };
+        let middle = self.size_px.y * Self::scale_heights(plan)[1];
         let first = self.size_px.x / 2.0 - step * (count - 1.0) / 2.0;
         let place = |(index, rating): (usize, i32)| {
             let centre = pos2(first + step * index as f32, middle);
-            (Button::Rating(rating), centred(centre, Vec2::splat(side)))
+            (Button::Rating(rating), centred(centre, side))
         };
         scale.ratings().enumerate().map(place).collect()
     }
 
     /// The button of the screen at a place in points of egui.
-    pub(crate) fn button_at(self, screen: Screen, scale: Scale, place: Pos2) -> Option<Button> {
-        let buttons = self.buttons(screen, scale).into_iter();
+    pub(crate) fn button_at(
+        self,
+        screen: Screen,
+        plan: &SessionPlan,
+        place: Pos2,
+    ) -> Option<Button> {
+        let buttons = self.buttons(screen, plan).into_iter();
         let mut hit = buttons.filter(|(_, rect)| self.points(*rect).contains(place));
-        hit.next().map(|(button, _)| button)
+        let hit = hit.next().map(|(button, _)| button);
+        let has_bars = screen.has_scale() && plan.response == ResponseStyle::Continuous;
+        let place_px = (place.to_vec2() * self.pixels_per_point).to_pos2();
+        hit.or_else(|| has_bars.then(|| self.mark_at(plan, place_px))?)
     }
 
     /// Where the mouse waits for each rating, in points: below the middle of the scale, so that the last
     /// answer is not nearer than any other.
-    pub(crate) fn pointer_rest(self) -> Pos2 {
-        ((self.size_px * vec2(0.5, 0.62)).round() / self.pixels_per_point).to_pos2()
+    pub(crate) fn pointer_rest(self, plan: &SessionPlan) -> Pos2 {
+        let y = match (plan.response, plan.rating) {
+            (ResponseStyle::Continuous, _) => 0.86,
+            (_, RatingTime::AfterExposure) => 0.62,
+            (_, RatingTime::DuringExposure) => 0.97,
+        };
+        ((self.size_px * vec2(0.5, y)).round() / self.pixels_per_point).to_pos2()
+    }
+
+    /// The corner that a photodiode looks at.
+    pub(crate) fn photodiode(self) -> Rect {
+        let side = (80.0 * self.unit()).round();
+        Rect::from_min_size(pos2(0.0, self.size_px.y - side), Vec2::splat(side))
     }
 
     /// The bands that say PILOT.
@@ -144,6 +223,35 @@ mod tests {
         pixels_per_point: 1.25,
     };
 
+    fn plan() -> SessionPlan {
+        let folder = tempfile::tempdir().unwrap();
+        crate::common::small_study(folder.path()).protocol.session
+    }
+
+    #[test]
+    fn every_mark_of_a_bar_can_be_clicked_where_it_is_drawn() {
+        let mut plan = plan();
+        plan.layout = Layout::Dscqs;
+        plan.response = ResponseStyle::Continuous;
+        plan.scale.highest = 100;
+        for (width, height) in [(1024.0, 768.0), (1920.0, 1080.0), (3840.0, 2160.0)] {
+            let geometry = Geometry {
+                size_px: vec2(width, height),
+                pixels_per_point: 1.5,
+            };
+            for (index, bar) in geometry.bars(&plan).into_iter().enumerate() {
+                for rating in plan.scale.ratings() {
+                    let y = Geometry::mark_y(bar, &plan, rating);
+                    let place = pos2(bar.center().x, y).to_vec2() / 1.5;
+                    let button = geometry.button_at(Screen::Rating, &plan, place.to_pos2());
+                    assert_eq!(button, Some(Button::Bar(index, rating)));
+                }
+            }
+            let rest = geometry.pointer_rest(&plan);
+            assert_eq!(geometry.button_at(Screen::Rating, &plan, rest), None);
+        }
+    }
+
     #[test]
     fn images_stand_side_by_side_on_whole_pixels_with_the_gap_between() {
         let images = MONITOR.images(Picture::Flanked, vec2(321.0, 320.0), 24.0);
@@ -161,10 +269,8 @@ mod tests {
 
     #[test]
     fn every_rating_has_a_button_of_its_own_on_the_screen() {
-        let wide = Scale {
-            lowest: -10,
-            highest: 10,
-        };
+        let mut wide = plan();
+        wide.scale.lowest = -10;
         for (width, height) in [
             (1920.0, 1080.0),
             (1280.0, 1024.0),
@@ -175,7 +281,7 @@ mod tests {
                 size_px: vec2(width, height),
                 pixels_per_point: 1.0,
             };
-            let buttons = geometry.buttons(Screen::Rating, wide);
+            let buttons = geometry.buttons(Screen::Rating, &wide);
             assert_eq!(buttons.len(), 21);
             assert!(
                 buttons
@@ -185,10 +291,13 @@ mod tests {
             assert!(buttons.is_sorted_by(|left, right| left.1.right() < right.1.left()));
             for (button, rect) in buttons {
                 assert_eq!(
-                    geometry.button_at(Screen::Rating, wide, rect.center()),
+                    geometry.button_at(Screen::Rating, &wide, rect.center()),
                     Some(button)
                 );
-                assert_eq!(geometry.button_at(Screen::Blank, wide, rect.center()), None);
+                assert_eq!(
+                    geometry.button_at(Screen::Blank, &wide, rect.center()),
+                    None
+                );
             }
         }
     }

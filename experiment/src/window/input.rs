@@ -2,6 +2,8 @@
 
 use eframe::egui::{self, PointerButton};
 
+use protocols::SessionPlan;
+
 use super::geometry::Geometry;
 use crate::{Event, Key, Screen};
 
@@ -11,12 +13,12 @@ pub(crate) fn events(
     context: &egui::Context,
     geometry: Geometry,
     screen: Screen,
-    scale: protocols::Scale,
+    plan: &SessionPlan,
 ) -> Vec<Event> {
     context.input(|input| {
         let events = input.events.iter();
         events
-            .filter_map(|event| session_event(event, geometry, screen, scale))
+            .filter_map(|event| session_event(event, geometry, screen, plan))
             .collect()
     })
 }
@@ -25,7 +27,7 @@ fn session_event(
     event: &egui::Event,
     geometry: Geometry,
     screen: Screen,
-    scale: protocols::Scale,
+    plan: &SessionPlan,
 ) -> Option<Event> {
     match event {
         egui::Event::PointerButton {
@@ -34,13 +36,26 @@ fn session_event(
             pressed,
             ..
         } => {
-            let button = geometry.button_at(screen, scale, *pos);
+            let button = geometry.button_at(screen, plan, *pos);
             Some(if *pressed {
                 Event::Press(button)
             } else {
                 Event::Release(button)
             })
         }
+        egui::Event::PointerMoved(pos) => {
+            let button = geometry.button_at(screen, plan, *pos);
+            Some(Event::Drag(button))
+        }
+        egui::Event::Key {
+            key: key @ (egui::Key::ArrowUp | egui::Key::ArrowDown),
+            pressed: true,
+            ..
+        } => Some(Event::Key(if *key == egui::Key::ArrowUp {
+            Key::Up
+        } else {
+            Key::Down
+        })),
         egui::Event::Key {
             key,
             pressed: true,
@@ -48,6 +63,8 @@ fn session_event(
             ..
         } => {
             let key = match key {
+                egui::Key::Tab => Key::Tab,
+                egui::Key::P => Key::Pause,
                 egui::Key::Enter => Key::Enter,
                 egui::Key::Escape => Key::Escape,
                 egui::Key::Backspace => Key::Backspace,

@@ -11,10 +11,10 @@ use eframe::egui::{
     Align, Color32, ColorImage, Context, CornerRadius, FontId, Galley, Painter, Pos2, Rect, Stroke,
     StrokeKind, TextureHandle, TextureOptions, Vec2, pos2, vec2,
 };
-use protocols::{SessionPlan, StimulusId, StimulusPlan};
+use protocols::{Layout, RatingTime, ResponseStyle, SessionPlan, StimulusId, StimulusPlan};
 
 use super::geometry::{Geometry, Slot};
-use crate::{Button, Screen, Session, StimulusSet};
+use crate::{Button, Response, Screen, Session, StimulusSet};
 
 const INK: Color32 = Color32::from_gray(12);
 
@@ -63,23 +63,45 @@ impl Brush<'_> {
         let screen = session.screen();
         match screen {
             Screen::Instructions => self.page(&texts.instructions, 0.43),
+            Screen::Resumed => self.page(&texts.resumed, 0.43),
+            Screen::TooSlow => self.page(&texts.too_slow, 0.43),
+            Screen::Paused => self.page(&texts.paused, 0.43),
             Screen::PracticeOver => self.page(&texts.practice_over, 0.43),
             Screen::Thanks => self.page(&texts.thanks, 0.5),
             Screen::ConfirmStop => self.line(&texts.stop_question, 40.0, 0.42),
-            Screen::Rating => self.scale(session.typed()),
-            Screen::Exposure(trial, picture) => {
+            Screen::Exposure(trial, picture) | Screen::RatedExposure(trial, picture) => {
                 let [width, height] = pictures.image_px.map(|pixels| pixels as f32);
                 let gap_px = self.plan.gap_px as f32;
                 let images = self.geometry.images(picture, vec2(width, height), gap_px);
                 let test_image = &session.trials()[trial].stimulus_id;
                 for (slot, rect) in images {
                     self.image(slot, rect, test_image, pictures);
+                    self.pair_name(session.part(), rect);
                 }
             }
-            Screen::Blank => {}
+            Screen::Rating | Screen::Blank => {}
         }
-        for (button, rect) in self.geometry.buttons(screen, self.plan.scale) {
+        if screen.has_scale() {
+            self.scale(screen, session.response());
+        }
+        for (button, rect) in self.geometry.buttons(screen, self.plan) {
             self.button(button, rect, session.pressed());
+        }
+        if self.plan.photodiode {
+            let has_test_image = screen
+                .picture()
+                .is_some_and(|(_, shown)| shown.has_test_image());
+            let grey = if has_test_image { 255 } else { 0 };
+            self.fill(self.geometry.photodiode(), Color32::from_gray(grey));
+        }
+    }
+
+    /// The name of a member of a pair, above it.
+    fn pair_name(&self, part: usize, image_px: Rect) {
+        if self.plan.layout == Layout::Dscqs {
+            let above = image_px.center_top() - vec2(0.0, 40.0 * self.geometry.unit());
+            let name = &self.plan.texts.pair[part % 2];
+            self.centred(self.galley(name, 40.0, f32::INFINITY, Align::Center), above);
         }
     }
 
@@ -151,10 +173,29 @@ impl Brush<'_> {
         self.centred(galley, self.place(0.5, y));
     }
 
-    fn scale(&self, typed: &str) {
+    fn scale(&self, screen: Screen, response: &Response) {
         let texts = &self.plan.texts;
-        self.line(&texts.question, 40.0, 0.38);
-        let buttons = self.geometry.buttons(Screen::Rating, self.plan.scale);
+        let [question_y, row_y] = Geometry::scale_heights(self.plan);
+        self.line(&texts.question, 40.0, question_y);
+        let mut field_place = self.place(0.5, row_y + 0.18);
+        if self.plan.response == ResponseStyle::Continuous {
+            self.bars(response);
+            field_place = self.place(0.83, 0.5);
+        } else if self.plan.response == ResponseStyle::Buttons {
+            self.ends(screen);
+        }
+        if self.plan.rating == RatingTime::DuringExposure {
+            field_place = self.place(0.93, row_y);
+        }
+        if !response.typed().is_empty() {
+            self.typed(response.typed(), field_place);
+        }
+    }
+
+    /// The words below both ends of a row of numbers.
+    fn ends(&self, screen: Screen) {
+        let texts = &self.plan.texts;
+        let buttons = self.geometry.buttons(screen, self.plan);
         if let [(_, first), .., (_, last)] = buttons.as_slice() {
             let width = (last.right() - first.left()) * 0.4;
             let below = Vec2::new(0.0, 16.0 * self.geometry.unit());
@@ -163,19 +204,85 @@ impl Brush<'_> {
             let words = self.galley(&texts.highest, 26.0, width, Align::RIGHT);
             self.at(words, last.right_bottom() + below);
         }
-        if !typed.is_empty() {
-            let size_px = vec2(150.0, 84.0) * self.geometry.unit();
-            let field = Rect::from_center_size(self.place(0.5, 0.68), size_px);
-            self.framed(field, Color32::from_gray(235));
-            self.centred(
-                self.galley(typed, 46.0, f32::INFINITY, Align::Center),
-                field.center(),
-            );
-            let hint = self.place(0.5, 0.68) + vec2(0.0, 72.0 * self.geometry.unit());
-            self.centred(
-                self.galley("Enter", 24.0, f32::INFINITY, Align::Center),
-                hint,
-            );
+    }
+
+    /// The number that is being typed.
+    fn typed(&self, typed: &str, centre: Pos2) {
+        let size_px = vec2(150.0, 84.0) * self.geometry.unit();
+        let field = Rect::from_center_size(centre, size_px);
+        self.framed(field, Color32::from_gray(235));
+        let number = self.galley(typed, 46.0, f32::INFINITY, Align::Center);
+        self.centred(number, field.center());
+        let hint = centre + vec2(0.0, 72.0 * self.geometry.unit());
+        self.centred(
+            self.galley("Enter", 24.0, f32::INFINITY, Align::Center),
+            hint,
+        );
+    }
+
+    /// The bars of a continuous scale with their marks, and the words to their left.
+    fn bars(&self, response: &Response) {
+        let bars = self.geometry.bars(self.plan);
+        let unit = self.geometry.unit();
+        for (index, (&bar, mark)) in bars.iter().zip(response.marks()).enumerate() {
+            self.framed(bar, Color32::from_gray(180));
+            if self.plan.layout == Layout::Dscqs {
+                let name = self.galley(
+                    &self.plan.texts.pair[index],
+                    40.0,
+                    f32::INFINITY,
+                    Align::Center,
+                );
+                self.centred(name, bar.center_top() - vec2(0.0, 36.0 * unit));
+            }
+            if let Some(mark) = mark {
+                let y = Geometry::mark_y(bar, self.plan, mark);
+                let size = vec2(bar.width() + 28.0 * unit, 10.0 * unit);
+                self.fill(Rect::from_center_size(pos2(bar.center().x, y), size), INK);
+                let number = self.galley(&mark.to_string(), 30.0, f32::INFINITY, Align::LEFT);
+                self.centred(number, pos2(bar.right() + 48.0 * unit, y));
+            }
+            if bars.len() > 1 && index == response.bar() && !response.typed().is_empty() {
+                self.fill(
+                    Rect::from_center_size(
+                        bar.center_bottom() + vec2(0.0, 18.0 * unit),
+                        vec2(bar.width(), 6.0 * unit),
+                    ),
+                    INK,
+                );
+            }
+        }
+        if let Some(bar) = bars.first() {
+            self.grades(*bar);
+        }
+    }
+
+    /// The words of the scale beside a bar: each in the middle of its stretch, or one at each end.
+    fn grades(&self, bar: Rect) {
+        let texts = &self.plan.texts;
+        let count = texts.labels.len() as f32;
+        let stretch = |(index, words): (usize, &String)| {
+            let part = (index as f32 + 0.5) / count;
+            (words.clone(), bar.bottom() - part * bar.height())
+        };
+        let mut grades: Vec<(String, f32)> = texts.labels.iter().enumerate().map(stretch).collect();
+        if grades.is_empty() {
+            grades = vec![
+                (texts.lowest.clone(), bar.bottom()),
+                (texts.highest.clone(), bar.top()),
+            ];
+        }
+        let unit = self.geometry.unit();
+        let room = bar.left() - 40.0 * unit;
+        for (words, y) in grades {
+            let galley = self.galley(&words, 28.0, room * 0.9, Align::RIGHT);
+            let half = galley.rect.height() * self.geometry.pixels_per_point / 2.0;
+            self.at(galley, pos2(room, y - half));
+        }
+        for line in 1..texts.labels.len() {
+            let y = bar.bottom() - line as f32 / count * bar.height();
+            let tick = Rect::from_center_size(pos2(bar.left(), y), vec2(24.0, 3.0) * unit);
+            self.fill(tick, INK);
         }
     }
 
@@ -210,11 +317,24 @@ impl Brush<'_> {
         let (words, size) = match button {
             Button::Continue => (texts.continue_button.clone(), 32.0),
             Button::Stop => (texts.stop_button.clone(), 32.0),
+            Button::Rating(rating) if self.plan.response == ResponseStyle::Labelled => {
+                (self.label(rating), 30.0)
+            }
             Button::Rating(rating) => (rating.to_string(), 40.0),
+            Button::Bar(..) => return,
         };
         self.centred(
             self.galley(&words, size, f32::INFINITY, Align::Center),
             rect_px.center(),
         );
+    }
+
+    /// The word for a rating of a labelled scale.
+    fn label(&self, rating: i32) -> String {
+        let labels = self.plan.scale.ratings().zip(&self.plan.texts.labels);
+        let mut own = labels.filter(|(labelled, _)| *labelled == rating);
+        own.next()
+            .map(|(_, words)| words.clone())
+            .unwrap_or_default()
     }
 }

@@ -1,0 +1,63 @@
+//! What happened in a session besides its ratings: each with its time, for the log of events.
+
+/// Something that the data should know.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Note {
+    /// When, by the driver's clock.
+    pub at_s: f64,
+    /// The index of the trial that was on.
+    pub trial: usize,
+    /// What.
+    pub event: Noted,
+    /// More about it, in words or numbers.
+    pub detail: String,
+}
+
+/// What was noted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Noted {
+    /// Escape: the subject is asked whether to stop.
+    Escape,
+    /// The key P: the session rests.
+    Pause,
+    /// The session goes on after either.
+    GoneOn,
+    /// An exposure was cut short and is shown again.
+    ExposureInterrupted,
+    /// An answer sooner than the shortest response time; not taken.
+    TooSoon,
+    /// The longest response time was over; the images are shown again.
+    TooLate,
+    /// A click while an answer was being put on disk, or beside every button.
+    StrayClick,
+    /// The window lost the keyboard.
+    FocusLost,
+    /// The window has the keyboard again.
+    FocusRegained,
+    /// A rating was put on disk; the detail says how long that took.
+    RatingOnDisk,
+    /// The screenshot was compared with the images.
+    PixelsCompared,
+    /// The session ended.
+    Ended,
+}
+
+impl Noted {
+    /// The word in the log.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Escape => "escape",
+            Self::Pause => "pause",
+            Self::GoneOn => "gone_on",
+            Self::ExposureInterrupted => "exposure_interrupted",
+            Self::TooSoon => "answer_too_soon",
+            Self::TooLate => "answer_too_late",
+            Self::StrayClick => "stray_click",
+            Self::FocusLost => "focus_lost",
+            Self::FocusRegained => "focus_regained",
+            Self::RatingOnDisk => "rating_on_disk",
+            Self::PixelsCompared => "pixels_compared",
+            Self::Ended => "ended",
+        }
+    }
+}
