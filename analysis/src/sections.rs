@@ -149,22 +149,40 @@ impl Sections<'_> {
         let layout = match protocol.session.layout {
             Layout::Flanking => "between the two, all three at once,",
             Layout::Sequence => "after the one and before the other, one at a time,",
+            Layout::Single => "alone",
+            Layout::Dsis => "after that one",
+            Layout::Dscqs => "twice in turn with that one, both being rated,",
         };
         let scale = protocol.session.scale;
         format!(
             "One scene was ray traced so that its achromatic (A) and chromatic (C1, C2) channels had different numbers of \
-             spatial samples, here called rays: {}. Each of the {n_shown} images was rated from {} to {} \
-             against an image with {} rays in all channels, which stands for {}, and one with {}, which stands for {}. The \
+             spatial samples, here called rays: {}. Each of the {n_shown} images was rated from {} to {}{}. The \
              image to be rated was shown {layout} for {} s.",
             sequences.join("; "),
             scale.lowest,
             scale.highest,
-            protocol.stimuli.anchors.zero_rays,
-            scale.lowest,
-            protocol.stimuli.anchors.ten_rays,
-            scale.highest,
+            self.comparison(),
             protocol.session.exposure_s
         )
+    }
+
+    /// What the images were rated against.
+    fn comparison(&self) -> String {
+        let protocol = &self.study.protocol;
+        let (scale, anchors) = (protocol.session.scale, &protocol.stimuli.anchors);
+        match protocol.session.layout {
+            Layout::Flanking | Layout::Sequence => format!(
+                " against an image with {} rays in all channels, which stands for {}, and one with {}, which stands for {}",
+                anchors.zero_rays, scale.lowest, anchors.ten_rays, scale.highest
+            ),
+            Layout::Single => String::new(),
+            Layout::Dsis | Layout::Dscqs => {
+                format!(
+                    " against an image with {} rays in all channels",
+                    anchors.ten_rays
+                )
+            }
+        }
     }
 
     fn figure(&self) -> String {
