@@ -35,6 +35,9 @@ enum Axis {
     Y,
 }
 
+/// The part of the width and of the height of a new cell in which its sample may lie.
+const JITTER: f64 = 0.7;
+
 /// An axis-aligned rectangle of the screen, in screen coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rectangle {
@@ -196,6 +199,20 @@ impl Cell {
         usize::from(is_second)
     }
 
+    /// Where the sample of a new cell is taken, a function of the seed and the cell alone.
+    ///
+    /// Uniform within [`JITTER`] of the width and of the height around the middle: an edge that cuts off a
+    /// part `p` of a cell is missed by `p (1 - p)` on average by a uniform point and by `min(p, 1 - p)²`, half
+    /// of that, by the middle, which however errs in the same way in every cell along the edge.
+    pub(crate) fn sample_point(self, seed: u64) -> ScreenPoint {
+        let ScreenPoint { x, y } = self.random_point(seed);
+        let middle = self.rectangle().middle();
+        ScreenPoint {
+            x: middle.x + JITTER * (x - middle.x),
+            y: middle.y + JITTER * (y - middle.y),
+        }
+    }
+
     /// The uniform random point of this cell, a function of the seed and the cell alone.
     ///
     /// Two 53-bit fractions from the `ChaCha8` stream whose key is the seed and whose number is the path.
@@ -217,6 +234,13 @@ impl Rectangle {
     /// Its share of the screen.
     pub fn area(&self) -> f64 {
         self.width * self.height
+    }
+
+    fn middle(&self) -> ScreenPoint {
+        ScreenPoint {
+            x: self.left + 0.5 * self.width,
+            y: self.top + 0.5 * self.height,
+        }
     }
 }
 

@@ -17,6 +17,8 @@ mod from_scene;
 mod geometry;
 mod image_record;
 mod image_request;
+mod leaf_map;
+mod leaves;
 mod matrix3;
 mod opponent;
 mod opponent_exr;
@@ -37,7 +39,6 @@ mod srgb;
 mod srgb_png;
 mod stimulus_set;
 mod threads;
-mod waiting;
 mod watch;
 
 pub use account::RayAccount;
@@ -58,7 +59,7 @@ pub use opponent::{
 pub use opponent_exr::read_opponent_exr;
 pub use ray_tree::RayTree;
 pub use reconstruct::reconstruct;
-pub use refine::{BATCH, TracePlan, trace};
+pub use refine::{TracePlan, trace};
 pub use render_image::{ImageSummary, render_image_of};
 pub use sampler::{Sampler, ScreenPoint};
 pub use scene::Scene;

@@ -1,9 +1,9 @@
 //! The trace: from a sampler and a ray count to the screen tree.
 //!
-//! Down to the minimum depth every cell is split, breadth first; then, in batches, the leaves of highest
-//! [priority](crate::priority). The samples of a batch are taken in parallel and added in the order of
-//! priority, so that the tree depends on no thread. Neither positions nor priorities nor ties depend on the
-//! final count, and a last batch that is cut short is the beginning of the whole one: a tree of N samples
+//! Down to the minimum depth every cell is split, breadth first; then, in [rounds](crate::leaves), the leaves
+//! of highest [priority](crate::priority). The samples of a round are taken in parallel and added in the order
+//! of priority, so that the tree depends on no thread. Neither positions nor priorities nor ties depend on the
+//! final count, and a last round that is cut short is the beginning of the whole one: a tree of N samples
 //! is the beginning of every larger tree of the same sampler and plan.
 //!
 //! A channel is shaded only up to its stop. A alone drives the refinement unless the plan says otherwise;
@@ -16,19 +16,13 @@ use rayon::prelude::*;
 
 use crate::cell::Cell;
 use crate::checkpoint::TakenSample;
-use crate::priority::{ExpectedVariance, PriorityRule};
-use crate::sampler::{GridPoint, Sampler};
+use crate::leaves::{Leaves, Samples};
+use crate::priority::PriorityRule;
+use crate::sampler::{GridPoint, Sampler, ScreenPoint};
 use crate::screen_tree::{NewSample, PlacedNode, Reach, ScreenTree};
-use crate::waiting::{Candidate, Waiting};
 
-/// Leaves split between two looks at the priorities, until the tree has [`LOOK_SHARE`] times as many.
-///
-/// Measured on the study's scene: batches of 100, 200 and 500 differ by less than half a percent in the error
-/// of A and not in time.
-pub const BATCH: usize = 100;
-
-/// From then on one leaf in this many is split between two looks, so that a large tree has large batches.
-const LOOK_SHARE: usize = 64;
+/// Samples taken between two reports of progress: a round is taken in pieces of this many.
+const BATCH: usize = 4096;
 
 /// How a screen tree is made.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -108,10 +102,6 @@ pub(crate) fn trace_from<S: Sampler>(
     (progress, is_cancelled): (&(dyn Fn(u64, u64) + Sync), &dyn Fn() -> bool),
 ) -> ScreenTree {
     let rays = plan.rays();
-    let rule = PriorityRule {
-        min_depth: plan.min_depth,
-        pixel_area: 1.0 / (f64::from(plan.size_px[0]) * f64::from(plan.size_px[1])),
-    };
     let mut ray_tree = S::RayTree::default();
     let screen = Cell::screen(plan.size_px);
     let first = Probe::new(plan, 0, screen);
@@ -120,66 +110,29 @@ pub(crate) fn trace_from<S: Sampler>(
         None => first.take(sampler, &mut ray_tree),
     };
     let mut tree = ScreenTree::new(screen, &first, plan.capacity(), rays);
-    let mut waiting = Waiting::new();
-    let wait = |waiting: &mut Waiting, candidate: Candidate| {
-        let cell = candidate.node.cell;
-        if cell.depth() < plan.deepest() {
-            waiting.push(candidate, rule.priority(cell, candidate.expected));
-        }
-    };
-    let root = Candidate {
-        node: tree.root(),
-        expected: ExpectedVariance::default(),
-    };
-    wait(&mut waiting, root);
-    while tree.len() < rays && !is_cancelled() {
-        let batch = next_batch(&mut waiting, rays - tree.len(), until_next_look(tree.len()));
-        if batch.is_empty() {
+    let pixels = f64::from(plan.size_px[0]) * f64::from(plan.size_px[1]);
+    let rule = PriorityRule::new(plan.min_depth, plan.deepest(), 1.0 / pixels);
+    let mut leaves = Leaves::new(tree.root(), rule, plan.size_px);
+    while tree.len() < rays {
+        let mut round = leaves.next_round();
+        round.truncate(rays - tree.len());
+        if round.is_empty() {
             break;
         }
-        for (candidate, new) in batch
-            .iter()
-            .zip(sample_batch(sampler, plan, &tree, &batch, taken))
-        {
-            let children = tree.split(candidate.node, &new);
-            let spread = spread(plan, &tree, children);
-            let expected = candidate.expected.of_halves(spread);
-            for node in children {
-                wait(&mut waiting, Candidate { node, expected });
+        for batch in round.chunks(BATCH) {
+            if is_cancelled() {
+                return tree;
             }
+            let new = sample_batch(sampler, plan, &tree, batch, taken);
+            for (leaf, new) in batch.iter().zip(&new) {
+                let children = tree.split(*leaf, new);
+                let samples = DriverSamples { plan, tree: &tree };
+                leaves.split(children, &samples);
+            }
+            progress(tree.len() as u64, rays as u64);
         }
-        progress(tree.len() as u64, rays as u64);
     }
     tree
-}
-
-/// How many leaves are split before the next look at the priorities, when there are this many.
-const fn until_next_look(leaves: usize) -> usize {
-    let share = leaves / LOOK_SHARE;
-    if share < BATCH {
-        BATCH - leaves % BATCH
-    } else {
-        share
-    }
-}
-
-/// The first candidates, no more than either limit; leaves above the minimum depth are never mixed with
-/// others, since their children may be due before those.
-fn next_batch(
-    waiting: &mut Waiting,
-    still_to_take: usize,
-    until_next_look: usize,
-) -> Vec<Candidate> {
-    let is_due = waiting.is_due();
-    let most = until_next_look.min(still_to_take);
-    let mut batch = Vec::with_capacity(most);
-    while batch.len() < most && waiting.is_due() == is_due {
-        match waiting.pop() {
-            Some(candidate) => batch.push(candidate),
-            None => break,
-        }
-    }
-    batch
 }
 
 /// A sample to be taken.
@@ -191,7 +144,7 @@ struct Probe {
 impl Probe {
     fn new(plan: &TracePlan, sample: usize, cell: Cell) -> Self {
         Self {
-            point: cell.random_point(plan.seed).into(),
+            point: cell.sample_point(plan.seed).into(),
             is_shaded: PerChannel::from_fn(|c| plan.is_shaded(c, sample, cell.depth())),
         }
     }
@@ -219,12 +172,12 @@ fn sample_batch<S: Sampler>(
     sampler: &S,
     plan: &TracePlan,
     tree: &ScreenTree,
-    batch: &[Candidate],
+    batch: &[PlacedNode],
     taken: &[TakenSample],
 ) -> Vec<NewSample> {
     let first = tree.len();
-    let take = |ray_tree: &mut S::RayTree, (place, candidate): (usize, &Candidate)| {
-        let PlacedNode { sample, cell, .. } = candidate.node;
+    let take = |ray_tree: &mut S::RayTree, (place, leaf): (usize, &PlacedNode)| {
+        let PlacedNode { sample, cell, .. } = *leaf;
         let free_half = cell.halves()[1 - cell.half_of(tree.point(sample))];
         let probe = Probe::new(plan, first + place, free_half);
         match taken.get(first + place) {
@@ -240,20 +193,31 @@ fn sample_batch<S: Sampler>(
         .collect()
 }
 
-/// A value as far as a display can show it: white has A = 1, and no colour of sRGB has a chroma beyond ±1.
-fn shown(value: f32) -> f64 {
-    f64::from(value.clamp(-1.0, 1.0))
+/// The samples as the drivers see them.
+struct DriverSamples<'a> {
+    plan: &'a TracePlan,
+    tree: &'a ScreenTree,
 }
 
-/// The variance of the two samples below a split, the largest over the drivers that have both.
-///
-/// Of what can be shown: a highlight a hundred times as bright as white would draw all samples to itself.
-fn spread(plan: &TracePlan, tree: &ScreenTree, children: [PlacedNode; 2]) -> f64 {
-    let of_channel = |channel| {
-        let [one, other] = children.map(|child| tree.value(channel, child.sample));
-        let difference = shown(one?) - shown(other?);
-        Some(0.5 * difference * difference)
-    };
-    let drivers = Channel::ALL.into_iter().filter(|&c| plan.is_driver(c));
-    drivers.filter_map(of_channel).fold(0.0, f64::max)
+impl Samples for DriverSamples<'_> {
+    fn point(&self, sample: u32) -> ScreenPoint {
+        self.tree.point(sample)
+    }
+
+    /// The largest over the drivers that have both; of what can be shown, since a highlight a hundred times as
+    /// bright as white would draw all samples to itself.
+    fn variance(&self, one: u32, other: u32) -> f32 {
+        let of_channel = |channel| {
+            let [one, other] = [one, other].map(|sample| self.tree.value(channel, sample));
+            let difference = shown(one?) - shown(other?);
+            Some(0.5 * difference * difference)
+        };
+        let drivers = Channel::ALL.into_iter().filter(|&c| self.plan.is_driver(c));
+        drivers.filter_map(of_channel).fold(0.0, f32::max)
+    }
+}
+
+/// A value as far as a display can show it: white has A = 1, and no colour of sRGB has a chroma beyond ±1.
+fn shown(value: f32) -> f32 {
+    value.clamp(-1.0, 1.0)
 }

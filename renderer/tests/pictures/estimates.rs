@@ -37,9 +37,10 @@ fn two_samples_have_the_textbook_variance_and_one_has_none() {
     assert!((root.variance.unwrap() - sample_variance / 2.0).abs() < 1e-15);
 }
 
-/// A ramp over equal cells: each sample is uniform in its cell, so that over many seeds the mean of the
-/// root strays from 1/2 with a variance of w²/12 per cell of width w, divided by the number of cells. The
-/// estimate also holds the steps between neighbours, so it is larger, but no more than some times.
+/// A ramp over equal cells: over many seeds the mean of the root strays from 1/2 with a variance of w²/12 per
+/// cell of width w, divided by the number of cells, if each sample is uniform in its cell; and of .49 of that
+/// if it is uniform in the middle 0.7 of it. A sample that was taken for a larger cell lies between the two.
+/// The estimate also holds the steps between neighbours, so it is larger, but no more than some times.
 #[test]
 fn the_variance_of_a_ramp_is_of_the_size_that_seeds_show() {
     let seeds = 400;
@@ -57,11 +58,11 @@ fn the_variance_of_a_ramp_is_of_the_size_that_seeds_show() {
         .map(|root| (root.mean - 0.5).powi(2))
         .sum::<f64>()
         / 400.0;
-    let expected = (1.0 / 8.0_f64).powi(2) / 12.0 / 64.0;
+    let most = (1.0 / 8.0_f64).powi(2) / 12.0 / 64.0;
     // A variance from 400 seeds has a standard error of √(2/400) = 7%; five of it.
     assert!(
-        (seen / expected - 1.0).abs() < 0.36,
-        "{seen} instead of {expected}"
+        seen > 0.49 * 0.64 * most && seen < 1.36 * most,
+        "{seen}, and {most} at the most"
     );
     let said: f64 = roots.iter().map(|root| root.variance.unwrap()).sum::<f64>() / 400.0;
     assert!(
