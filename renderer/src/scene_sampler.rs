@@ -1,41 +1,51 @@
 //! A scene as the screen tree samples it: rays in, opponent channels out.
 //!
-//! The same point gives the same bits whatever was sampled before, on any thread: nothing is random and
-//! nothing is remembered.
+//! The same point gives the same bits whatever was sampled before, on any thread: what is random depends on
+//! the point alone, and nothing is remembered.
 
+use arrayvec::ArrayVec;
 use protocols::{Channel, Quadrature};
 
 use crate::geometry::{Hit, Ray, Span, Vector};
-use crate::ray_tree::{RayNode, RayTree};
+use crate::lighting::{HitKey, LIFT_M, Receiver, Surface};
+use crate::ray_tree::RayTree;
 use crate::sampler::{Sampler, ScreenPoint};
 use crate::scene::Scene;
-use crate::scene::light::Light;
-use crate::scene::material::{Highlight, Material, Mirror, fresnel_reflectance};
+use crate::scene::material::{
+    Body, Material, Mirror, Reflectance, fresnel_reflectance, refraction,
+};
 use crate::shader::{Shader, single};
 use crate::spectra::WavelengthRule;
+use crate::tints::TintIndex;
 
-/// How far off a surface a new ray starts, so that it does not meet the same place again.
-const LIFT_M: f64 = 1e-6;
-/// A mirrored ray that counts less than this is not followed: a quarter of an 8-bit step of white.
+/// A ray that counts less than this is not followed: a quarter of an 8-bit step of white.
 const LEAST_SHARE: f64 = 1.0 / 1024.0;
+/// No path is longer: the camera's ray and seven more.
+const MAX_DEPTH: u32 = 8;
+/// No ray tree has more hits; the weaker rays of a hit are the ones left out.
+const MAX_HITS: usize = 32;
 
 /// A scene, the wavelengths at which it carries light, and the shape of its picture.
 #[derive(Clone, Debug)]
 pub struct SceneSampler<'scene> {
     scene: &'scene Scene,
     shader: Shader,
-    white: u16,
     aspect: f64,
 }
 
-/// A hit with what is needed to send rays on from it.
-struct Surface {
-    place: Vector,
-    /// Towards the viewer's side.
-    normal: Vector,
-    /// Of the mirrored ray.
-    mirrored: Vector,
+/// A ray that waits to be followed.
+#[derive(Clone, Copy, Debug)]
+struct Beam {
+    ray: Ray,
+    /// What part of what it finds reaches the eye, whatever its colour.
+    share: f64,
+    /// The same at the wavelength at which most does.
+    peak: f64,
+    tint: TintIndex,
+    depth: u32,
 }
+
+type Beams = ArrayVec<Beam, MAX_HITS>;
 
 impl<'scene> SceneSampler<'scene> {
     pub(crate) fn new(scene: &'scene Scene, quadrature: Quadrature, size_px: [u32; 2]) -> Self {
@@ -43,7 +53,6 @@ impl<'scene> SceneSampler<'scene> {
         Self {
             scene,
             shader: Shader::new(scene, &WavelengthRule::new(quadrature)),
-            white: Shader::white(scene),
             aspect: width / height,
         }
     }
@@ -53,100 +62,247 @@ impl<'scene> SceneSampler<'scene> {
         self.shader.wavelengths(channel)
     }
 
-    /// Whether and how strongly lights and mirrored rays count at a hit; and the share of the mirrored ray
-    /// at its strongest wavelength.
-    fn node(&self, material: &Material, surface: &Surface, reflectance: u16) -> (RayNode, f64) {
-        let mut node = RayNode {
-            body: reflectance,
-            mirror: self.white,
-            ..RayNode::default()
+    /// What [`Sampler::shade`] gives but for rounding, with no sum over wavelengths made in advance: the plain
+    /// way, by which the quick one is judged and the paper's cost of shading is measured.
+    pub fn shade_by_wavelength(&self, tree: &RayTree, channel: Channel) -> f32 {
+        self.shader.shade_by_wavelength(tree, channel)
+    }
+
+    /// Adds what a ray finds to the tree, and the rays that go on from there to `beams`.
+    fn follow(&self, beam: &Beam, at: ScreenPoint, tree: &mut RayTree, beams: &mut Beams) {
+        let scene = self.scene;
+        let nearest = scene.shapes.nearest(&beam.ray, Span::up_to(f64::INFINITY));
+        let Some((index, hit)) = nearest else {
+            return;
         };
-        let mut share = 0.0;
-        let mut body_share = 1.0;
-        match material.mirror {
-            None => {}
-            Some(Mirror::Metal { reflectance, peak }) => {
-                node.mirror = reflectance;
-                node.mirrored = 1.0;
-                share = peak;
+        tree.count_hit();
+        let material = usize::from(scene.material_of_shape[index as usize]);
+        let material = &scene.materials[material];
+        let shape = scene.shapes.shape(index);
+        let place = beam.ray.at(hit.distance_m);
+        let outwards = shape.normal(place, hit.part);
+        let is_entering = outwards.dot(beam.ray.direction) <= 0.0;
+        let smooth = shape.smooth_normal(place, hit.part);
+        let surface = Surface::new(&beam.ray, place, outwards, smooth);
+        if let (Some(light), true) = (material.emission, is_entering) {
+            self.see(beam, light, tree);
+        }
+        let body_share = match material.mirror {
+            None => 1.0,
+            Some(Mirror::Glass { refractive_index }) => {
+                let relative_index = if is_entering {
+                    refractive_index
+                } else {
+                    refractive_index.recip()
+                };
+                beam.pass_on(&surface, relative_index, beams);
+                if !is_entering {
+                    return;
+                }
+                0.0
             }
             Some(Mirror::Coat { refractive_index }) => {
                 let cos_incidence = surface.mirrored.dot(surface.normal).clamp(0.0, 1.0);
-                share = fresnel_reflectance(cos_incidence, refractive_index);
-                node.mirrored = single(share);
-                body_share = 1.0 - share;
+                let share = fresnel_reflectance(cos_incidence, refractive_index);
+                let ray = surface.mirrored_ray();
+                beam.send(ray, (share, 1.0), beam.tint, beams);
+                1.0 - share
+            }
+            Some(Mirror::Metal { reflectance, peak }) => {
+                if let Some(tint) = self.shader.tints().after(beam.tint, reflectance) {
+                    beam.send(surface.mirrored_ray(), (1.0, peak), tint, beams);
+                }
+                0.0
+            }
+        };
+        let reflectance = material
+            .body
+            .map(|body| self.reflectance(body, index, place, hit));
+        let hit_key = HitKey {
+            at,
+            hit: tree.hits(),
+        };
+        let ways = Ways {
+            tree,
+            share: beam.share,
+            body_share,
+            tint: beam.tint,
+        };
+        self.scatter(&surface, (material, reflectance), hit_key, ways);
+    }
+
+    fn reflectance(&self, body: Body, index: u32, place: Vector, hit: Hit) -> Reflectance {
+        let shape = self.scene.shapes.shape(index);
+        match body {
+            Body::Plain(reflectance) => Reflectance::Table(reflectance),
+            Body::Patterned(pattern) => {
+                let at = shape.surface_point(place, hit.part);
+                Reflectance::Table(pattern.reflectance_at(at))
+            }
+            Body::Textured(texture) => {
+                let texture = &self.scene.textures[usize::from(texture)];
+                Reflectance::Sigmoid(texture.at(shape.texture_point(place, hit.part)))
             }
         }
-        if material.body.is_none() {
-            body_share = 0.0;
-        } else if let Some(ambient) = &self.scene.ambient {
-            node.scattered_ambient = single(body_share * ambient.arrival(surface.normal));
-        }
-        for (index, light) in self.scene.lights.iter().enumerate() {
-            let (scattered, highlight) = self.lit(light, surface, material.highlight, body_share);
-            node.scattered[index] = single(scattered);
-            node.highlights[index] = single(highlight);
-        }
-        (node, share)
     }
 
-    /// What the body scatters of a light, and how bright its highlight is.
+    /// Adds the light that a surface itself is.
+    fn see(&self, beam: &Beam, light: u16, tree: &mut RayTree) {
+        let luminance = self.scene.lights[usize::from(light)].source.luminance();
+        let share = single(beam.share * luminance);
+        if share > 0.0 {
+            self.add_white(tree, beam.tint, light, share);
+        }
+    }
+
+    /// Adds light that no body has coloured.
     #[inline]
-    fn lit(
-        &self,
-        light: &Light,
-        surface: &Surface,
-        highlight: Option<Highlight>,
-        body_share: f64,
-    ) -> (f64, f64) {
-        let arrival = light.source.arrival(surface.place);
-        let cos_incidence = arrival.towards.dot(surface.normal);
-        if cos_incidence <= 0.0 {
-            return (0.0, 0.0);
+    fn add_white(&self, tree: &mut RayTree, tint: TintIndex, light: u16, share: f32) {
+        let white = self.shader.white();
+        if let Some(first) = self.shader.products(tint, white) {
+            tree.add_path(first + u32::from(light), share);
+        } else {
+            tree.add_share(light, share);
+            tree.add_surface(Reflectance::Table(white), tint);
         }
-        let glint = highlight.map_or(0.0, |highlight| {
-            highlight.at(arrival.towards.dot(surface.mirrored))
-        });
-        if body_share == 0.0 && glint == 0.0 {
-            return (0.0, 0.0);
-        }
-        let shadow_ray = Ray {
-            origin: surface.place + surface.normal * LIFT_M,
-            direction: arrival.towards,
-        };
-        if self
-            .scene
-            .shapes
-            .is_blocked(&shadow_ray, Span::up_to(arrival.distance_m))
-        {
-            return (0.0, 0.0);
-        }
-        let illuminance = arrival.illuminance;
-        (
-            body_share * illuminance * cos_incidence,
-            glint * illuminance,
-        )
     }
 
-    /// The surface that a ray hit, and which reflectance its body has there.
-    fn surface(&self, ray: &Ray, index: u32, hit: Hit, material: &Material) -> (Surface, u16) {
-        let shape = self.scene.shapes.shape(index);
-        let place = ray.at(hit.distance_m);
-        let outwards = shape.normal(place, hit.part);
-        let normal = if outwards.dot(ray.direction) > 0.0 {
-            -outwards
-        } else {
-            outwards
+    /// Adds what a surface scatters of each light, and its highlights.
+    fn scatter(
+        &self,
+        surface: &Surface,
+        (material, reflectance): (&Material, Option<Reflectance>),
+        key: HitKey,
+        ways: Ways<'_>,
+    ) {
+        let Ways {
+            tree,
+            share,
+            body_share,
+            tint,
+        } = ways;
+        let receiver = Receiver {
+            has_body: reflectance.is_some(),
+            highlight: material.highlight,
+            mirrors: material.mirror.is_some(),
         };
-        let reflectance = material.body.map_or(self.white, |body| {
-            body.reflectance_at(|| shape.surface_point(place, hit.part))
+        if !receiver.has_body && receiver.highlight.is_none() {
+            return;
+        }
+        let products = match reflectance {
+            Some(Reflectance::Table(body)) => self.shader.products(tint, body),
+            Some(Reflectance::Sigmoid(_)) | None => None,
+        };
+        let mut highlights: ArrayVec<(u16, f32), MAX_HITS> = ArrayVec::new();
+        let add = |tree: &mut RayTree, light: u16, illuminance: f64| {
+            let share = single(share * body_share * illuminance);
+            if share > 0.0 {
+                match products {
+                    Some(first) => tree.add_path(first + u32::from(light), share),
+                    None => tree.add_share(light, share),
+                }
+            }
+        };
+        let ambient = self.shader.ambient();
+        for light in 0..ambient {
+            let lit = self.scene.lit(light, surface, receiver, key);
+            if receiver.has_body {
+                add(tree, light, lit.illuminance);
+            }
+            if lit.highlight > 0.0 {
+                highlights.push((light, single(share * lit.highlight)));
+            }
+        }
+        if let (Some(light), true) = (&self.scene.ambient, receiver.has_body) {
+            add(tree, ambient, light.arrival(surface.normal));
+        }
+        if let Some(reflectance) = reflectance {
+            tree.add_surface(reflectance, tint);
+        }
+        for (light, share) in highlights {
+            self.add_white(tree, tint, light, share);
+        }
+    }
+}
+
+/// Where the light of a surface goes.
+struct Ways<'tree> {
+    tree: &'tree mut RayTree,
+    /// Of what the surface sends out, the part that reaches the eye.
+    share: f64,
+    /// Of what falls on the surface, the part that its body has.
+    body_share: f64,
+    tint: TintIndex,
+}
+
+impl Surface {
+    /// The surface that a ray met, whose own normal points `outwards`.
+    ///
+    /// A smooth normal that cannot be seen from the ray, or that would mirror it into the surface, gives way
+    /// to the surface's own.
+    fn new(ray: &Ray, place: Vector, outwards: Vector, smooth: Option<Vector>) -> Self {
+        let towards_viewer = |normal: Vector| {
+            if outwards.dot(ray.direction) > 0.0 {
+                -normal
+            } else {
+                normal
+            }
+        };
+        let facing = towards_viewer(outwards);
+        let smooth = smooth.map(towards_viewer).filter(|&normal| {
+            normal.dot(ray.direction) < 0.0 && ray.direction.reflected(normal).dot(facing) > 0.0
         });
-        let surface = Surface {
+        let normal = smooth.unwrap_or(facing);
+        Self {
             place,
+            facing,
             normal,
             mirrored: ray.direction.reflected(normal),
+        }
+    }
+
+    fn mirrored_ray(&self) -> Ray {
+        Ray {
+            origin: self.place + self.facing * LIFT_M,
+            direction: self.mirrored,
+        }
+    }
+}
+
+impl Beam {
+    /// Sends a ray on that counts for these shares of this one: whatever its colour, and at most.
+    #[inline]
+    fn send(&self, ray: Ray, (share, peak): (f64, f64), tint: TintIndex, beams: &mut Beams) {
+        let next = Self {
+            ray,
+            share: self.share * share,
+            peak: self.peak * share * peak,
+            tint,
+            depth: self.depth + 1,
         };
-        (surface, reflectance)
+        if next.peak >= LEAST_SHARE && next.depth <= MAX_DEPTH && !beams.is_full() {
+            beams.push(next);
+        }
+    }
+
+    /// Sends on what glass mirrors and what it lets through, the stronger one to be followed first.
+    fn pass_on(&self, surface: &Surface, relative_index: f64, beams: &mut Beams) {
+        let refraction = refraction(self.ray.direction, surface.normal, relative_index);
+        let mirrored = (surface.mirrored_ray(), refraction.reflectance);
+        let through = refraction.direction.map(|direction| {
+            let ray = Ray {
+                origin: surface.place - surface.facing * LIFT_M,
+                direction,
+            };
+            (ray, 1.0 - refraction.reflectance)
+        });
+        let rays = match through {
+            Some(through) if through.1 < mirrored.1 => [Some(through), Some(mirrored)],
+            through => [Some(mirrored), through],
+        };
+        for (ray, share) in rays.into_iter().flatten() {
+            self.send(ray, (share, 1.0), self.tint, beams);
+        }
     }
 }
 
@@ -155,23 +311,19 @@ impl Sampler for SceneSampler<'_> {
 
     fn intersect(&self, at: ScreenPoint, tree: &mut RayTree) {
         tree.clear();
-        let scene = self.scene;
-        let mut ray = scene.camera.ray(at, self.aspect);
-        let mut share = 1.0;
-        while let Some((index, hit)) = scene.shapes.nearest(&ray, Span::up_to(f64::INFINITY)) {
-            let material = usize::from(scene.material_of_shape[index as usize]);
-            let material = &scene.materials[material];
-            let (surface, reflectance) = self.surface(&ray, index, hit, material);
-            let (node, mirrored) = self.node(material, &surface, reflectance);
-            tree.push(node);
-            share *= mirrored;
-            if share < LEAST_SHARE || !tree.has_room() {
+        let mut beams = Beams::new();
+        beams.push(Beam {
+            ray: self.scene.camera.ray(at, self.aspect),
+            share: 1.0,
+            peak: 1.0,
+            tint: 0,
+            depth: 1,
+        });
+        for _ in 0..MAX_HITS {
+            let Some(beam) = beams.pop() else {
                 return;
-            }
-            ray = Ray {
-                origin: surface.place + surface.normal * LIFT_M,
-                direction: surface.mirrored,
             };
+            self.follow(&beam, at, tree, &mut beams);
         }
     }
 

@@ -1,20 +1,24 @@
 //! From a ray tree to the tristimulus value of one channel: section 3.3 of Meyer & Liu (1992), step 2.
 //!
-//! Light is carried back along the tree wavelength by wavelength and then summed with the channel's
-//! weights. Only wavelengths that count for the channel are computed.
+//! The light of one way is the sum over wavelengths of weight × power × reflectance × mirrors. For spectra
+//! that the scene names this sum is a constant, computed once for each channel; a ray then costs a product
+//! for each way by which light reaches it. A surface with a spectrum of its own is summed wavelength by
+//! wavelength, only over the wavelengths that count for the channel.
 //!
-//! Each channel has tables of its own, so that its wavelengths stand side by side; they are filled up to a
-//! multiple of four with wavelengths of weight zero.
+//! Tables by wavelength are filled up to a multiple of four with wavelengths of weight zero.
 
 use protocols::{Channel, PerChannel};
 
-use crate::ray_tree::{MAX_LIGHTS, RayNode, RayTree};
+use crate::ray_tree::{LightShare, LitSurface, RayTree};
 use crate::scene::Scene;
-use crate::scene::material::ReflectanceIndex;
-use crate::spectra::WavelengthRule;
+use crate::scene::material::{Mirror, Reflectance, ReflectanceIndex};
+use crate::spectra::{Sigmoid, WavelengthRule};
+use crate::tints::{TintIndex, Tints};
 
 /// Wavelengths that are computed side by side.
 const LANES: usize = 4;
+/// No more products are computed in advance, but for those of light that met no metal.
+const MAX_PRODUCTS: usize = 1 << 16;
 
 type Lanes = [f32; LANES];
 
@@ -23,32 +27,70 @@ type Lanes = [f32; LANES];
 struct ChannelTables {
     /// How many wavelengths count.
     wavelengths: usize,
-    weights: Vec<Lanes>,
-    /// For each light and last for ambient light, as `weights`.
-    powers: [Vec<Lanes>; MAX_LIGHTS + 1],
+    /// The wavelengths in the unit of [`Sigmoid`]s.
+    wavelengths_t: Vec<Lanes>,
+    /// The weights of the channel times the power of each light and last of ambient light.
+    lights: Vec<Lanes>,
     /// All reflectances one after another, and last a perfect white.
     reflectances: Vec<Lanes>,
+    tints: Vec<Lanes>,
+    /// The light of a way of share 1, by [`Shader::product`].
+    products: Vec<f32>,
 }
 
 /// The spectra of a scene, ready for each channel.
 #[derive(Clone, Debug)]
 pub(crate) struct Shader {
     tables: PerChannel<ChannelTables>,
+    tints: Tints,
+    /// How many lights there are, ambient light among them.
     lights: usize,
+    /// How many reflectances there are, white among them.
+    reflectances: usize,
+    products: usize,
 }
 
 impl Shader {
-    /// The place of the perfect white after `reflectances` reflectances: what a clear coat mirrors with.
-    pub(crate) fn white(scene: &Scene) -> ReflectanceIndex {
-        ReflectanceIndex::try_from(scene.reflectances.len()).unwrap_or(ReflectanceIndex::MAX)
-    }
-
     /// Takes the spectra of a scene at the wavelengths of a rule.
     pub(crate) fn new(scene: &Scene, rule: &WavelengthRule) -> Self {
-        Self {
-            tables: PerChannel::from_fn(|channel| ChannelTables::new(scene, rule, channel)),
-            lights: scene.lights.len(),
+        let metals = scene
+            .materials
+            .iter()
+            .filter_map(|material| match material.mirror {
+                Some(Mirror::Metal { reflectance, .. }) => Some(reflectance),
+                Some(Mirror::Coat { .. } | Mirror::Glass { .. }) | None => None,
+            });
+        let tints = Tints::of(metals);
+        let (lights, reflectances) = (scene.lights.len() + 1, scene.reflectances.len() + 1);
+        let of_each_tint = lights * reflectances;
+        let multiplied = (MAX_PRODUCTS / of_each_tint).clamp(1, tints.len());
+        let mut shader = Self {
+            tables: PerChannel::from_fn(|c| ChannelTables::new(scene, rule, &tints, c)),
+            tints,
+            lights,
+            reflectances,
+            products: multiplied * of_each_tint,
+        };
+        for channel in Channel::ALL {
+            let products = (0..shader.products).map(|product| shader.multiplied(product, channel));
+            shader.tables[channel].products = products.collect();
         }
+        shader
+    }
+
+    /// The place of the perfect white among the reflectances.
+    pub(crate) fn white(&self) -> ReflectanceIndex {
+        ReflectanceIndex::try_from(self.reflectances - 1).unwrap_or(ReflectanceIndex::MAX)
+    }
+
+    /// The place of ambient light among the lights.
+    pub(crate) fn ambient(&self) -> u16 {
+        u16::try_from(self.lights - 1).unwrap_or(u16::MAX)
+    }
+
+    /// What metals do to light.
+    pub(crate) fn tints(&self) -> &Tints {
+        &self.tints
     }
 
     /// How many wavelengths are computed for a channel.
@@ -56,55 +98,81 @@ impl Shader {
         self.tables[channel].wavelengths
     }
 
+    /// The products of a reflectance seen by way of these metals, if they were computed: that of light n is
+    /// n places on.
+    #[inline]
+    pub(crate) fn products(&self, tint: TintIndex, body: ReflectanceIndex) -> Option<u32> {
+        let place = (usize::from(tint) * self.reflectances + usize::from(body)) * self.lights;
+        (place < self.products).then(|| u32::try_from(place).unwrap_or(u32::MAX))
+    }
+
     /// The tristimulus value of a channel.
     #[inline]
     pub(crate) fn shade(&self, tree: &RayTree, channel: Channel) -> f32 {
         let tables = &self.tables[channel];
-        let mut sums: Lanes = [0.0; LANES];
-        for (group, weights) in tables.weights.iter().enumerate() {
-            let mut radiance: Lanes = [0.0; LANES];
-            for node in tree.nodes().iter().rev() {
-                radiance = self.leaving(node, tables, group, radiance);
-            }
-            for lane in 0..LANES {
-                sums[lane] += weights[lane] * radiance[lane];
-            }
+        let mut sum = 0.0;
+        for path in tree.paths() {
+            sum += path.share * tables.products[path.product as usize];
         }
-        (sums[0] + sums[1]) + (sums[2] + sums[3])
+        for (surface, shares) in tree.surfaces() {
+            sum += tables.of_surface(surface, shares);
+        }
+        sum
     }
 
-    /// The light that leaves a hit towards the viewer, given what its mirrored ray brings.
-    #[inline]
-    fn leaving(
-        &self,
-        node: &RayNode,
-        tables: &ChannelTables,
-        group: usize,
-        mirrored: Lanes,
-    ) -> Lanes {
-        let reflectances = |index: ReflectanceIndex| {
-            &tables.reflectances[usize::from(index) * tables.weights.len() + group]
+    /// The same as [`Self::shade`] but for rounding, every way summed wavelength by wavelength.
+    pub(crate) fn shade_by_wavelength(&self, tree: &RayTree, channel: Channel) -> f32 {
+        let tables = &self.tables[channel];
+        let of_paths = tree.paths().iter().map(|path| {
+            let (surface, light) = self.way(path.product as usize);
+            let share = LightShare {
+                light,
+                share: path.share,
+            };
+            tables.of_ways(surface, &[share])
+        });
+        let of_surfaces = tree
+            .surfaces()
+            .map(|(surface, shares)| tables.of_surface(surface, shares));
+        of_paths.chain(of_surfaces).sum()
+    }
+
+    /// What a product is of: the reverse of [`Self::products`].
+    fn way(&self, product: usize) -> (Way, u16) {
+        let (rest, light) = (product / self.lights, product % self.lights);
+        let way = Way {
+            reflectance: rest % self.reflectances,
+            tint: rest / self.reflectances,
         };
-        let (body, mirror) = (reflectances(node.body), reflectances(node.mirror));
-        let ambient = &tables.powers[MAX_LIGHTS][group];
-        let mut leaving: Lanes = [0.0; LANES];
-        for lane in 0..LANES {
-            leaving[lane] = body[lane] * node.scattered_ambient * ambient[lane]
-                + mirror[lane] * node.mirrored * mirrored[lane];
-        }
-        for light in 0..self.lights {
-            let power = &tables.powers[light][group];
-            for lane in 0..LANES {
-                let share = body[lane] * node.scattered[light] + node.highlights[light];
-                leaving[lane] += power[lane] * share;
-            }
-        }
-        leaving
+        (way, u16::try_from(light).unwrap_or(u16::MAX))
+    }
+
+    fn multiplied(&self, product: usize, channel: Channel) -> f32 {
+        let tables = &self.tables[channel];
+        let (way, light) = self.way(product);
+        let groups = tables.wavelengths_t.len();
+        let at = |table: &[Lanes], place: usize, group: usize, lane: usize| {
+            f64::from(table[place * groups + group][lane])
+        };
+        let terms = (0..groups * LANES).map(|place| {
+            let (group, lane) = (place / LANES, place % LANES);
+            at(&tables.lights, usize::from(light), group, lane)
+                * at(&tables.reflectances, way.reflectance, group, lane)
+                * at(&tables.tints, way.tint, group, lane)
+        });
+        single(terms.sum())
     }
 }
 
+/// A reflectance of the scene and the metals by which it is seen.
+#[derive(Clone, Copy)]
+struct Way {
+    reflectance: usize,
+    tint: usize,
+}
+
 impl ChannelTables {
-    fn new(scene: &Scene, rule: &WavelengthRule, channel: Channel) -> Self {
+    fn new(scene: &Scene, rule: &WavelengthRule, tints: &Tints, channel: Channel) -> Self {
         let nodes = rule.nodes_of(channel);
         let in_lanes = |values: &dyn Fn(usize) -> f64| -> Vec<Lanes> {
             let groups = nodes.chunks(LANES).map(|group| {
@@ -116,26 +184,76 @@ impl ChannelTables {
             });
             groups.collect()
         };
-        let mut powers: [Vec<Lanes>; MAX_LIGHTS + 1] = std::array::from_fn(|_| in_lanes(&|_| 0.0));
-        for (powers, light) in powers.iter_mut().zip(&scene.lights) {
-            let power = rule.power_at_nodes(&light.emission);
-            *powers = in_lanes(&|node| power[node]);
-        }
-        if let Some(ambient) = &scene.ambient {
-            let power = rule.power_at_nodes(&ambient.emission);
-            powers[MAX_LIGHTS] = in_lanes(&|node| power[node]);
-        }
+        let emissions = scene.lights.iter().map(|light| Some(&light.emission));
+        let ambient = scene.ambient.as_ref().map(|ambient| &ambient.emission);
+        let lights = emissions.chain([ambient]).flat_map(|emission| {
+            let power = emission.map(|emission| rule.power_at_nodes(emission));
+            let weights = &rule.weights[channel];
+            in_lanes(&|node| {
+                power
+                    .as_ref()
+                    .map_or(0.0, |power| weights[node] * power[node])
+            })
+        });
         let spectra = scene.reflectances.iter();
         let mut reflectances: Vec<Lanes> = spectra
             .flat_map(|spectrum| in_lanes(&|node| spectrum.at(rule.nodes_nm[node])))
             .collect();
         reflectances.extend(in_lanes(&|_| 1.0));
+        let tints = tints.metals().iter().flat_map(|metals| {
+            let spectra = metals
+                .iter()
+                .map(|&metal| &scene.reflectances[usize::from(metal)]);
+            in_lanes(&|node| spectra.clone().map(|s| s.at(rule.nodes_nm[node])).product())
+        });
         Self {
             wavelengths: nodes.len(),
-            weights: in_lanes(&|node| rule.weights[channel][node]),
-            powers,
+            wavelengths_t: in_lanes(&|node| Sigmoid::t(rule.nodes_nm[node])),
+            lights: lights.collect(),
             reflectances,
+            tints: tints.collect(),
+            products: Vec::new(),
         }
+    }
+
+    /// The light of a surface that was not multiplied in advance.
+    fn of_surface(&self, surface: &LitSurface, shares: &[LightShare]) -> f32 {
+        let tint = usize::from(surface.tint);
+        match surface.reflectance {
+            Reflectance::Table(reflectance) => {
+                let reflectance = usize::from(reflectance);
+                self.of_ways(Way { reflectance, tint }, shares)
+            }
+            Reflectance::Sigmoid(curve) => self.sum(tint, shares, |group| {
+                self.wavelengths_t[group].map(|t| curve.single_at(t))
+            }),
+        }
+    }
+
+    fn of_ways(&self, way: Way, shares: &[LightShare]) -> f32 {
+        let first = way.reflectance * self.wavelengths_t.len();
+        self.sum(way.tint, shares, |group| self.reflectances[first + group])
+    }
+
+    /// The sum over wavelengths of lights × reflectance × tint.
+    #[inline]
+    fn sum(&self, tint: usize, shares: &[LightShare], reflectance: impl Fn(usize) -> Lanes) -> f32 {
+        let groups = self.wavelengths_t.len();
+        let mut sums: Lanes = [0.0; LANES];
+        for group in 0..groups {
+            let mut arriving: Lanes = [0.0; LANES];
+            for share in shares {
+                let light = &self.lights[usize::from(share.light) * groups + group];
+                for lane in 0..LANES {
+                    arriving[lane] += share.share * light[lane];
+                }
+            }
+            let (reflectance, tint) = (reflectance(group), &self.tints[tint * groups + group]);
+            for lane in 0..LANES {
+                sums[lane] += arriving[lane] * reflectance[lane] * tint[lane];
+            }
+        }
+        (sums[0] + sums[1]) + (sums[2] + sums[3])
     }
 }
 
@@ -146,93 +264,4 @@ impl ChannelTables {
 )]
 pub(crate) fn single(value: f64) -> f32 {
     value as f32
-}
-
-#[cfg(test)]
-mod tests {
-    use std::path::Path;
-
-    use protocols::Quadrature;
-
-    use super::*;
-    use crate::sampler::{Sampler as _, ScreenPoint};
-    use crate::spectra::{Emission, Spectrum, cie, sensitivities};
-
-    const SCENE: &str = r#"
-sphere = [
-    { material = "ball", center_m = [0.0, 0.0, 0.5], radius_m = 0.5 },
-    { material = "copper", center_m = [1.1, 0.2, 0.5], radius_m = 0.5 },
-]
-ground = [{ material = "tiles", height_m = 0.0 }]
-camera = { position_m = [0.3, -5.0, 1.5], look_at_m = [0.5, 0.0, 0.4], up = [0, 0, 1], vertical_field_of_view_deg = 30 }
-ambient = { emittance = "A", illuminance = 0.1 }
-distant_light = [{ from = [-1.0, -2.0, 2.0], emittance = "D65", illuminance = 0.8 }]
-point_light = [{ position_m = [3.0, -2.0, 3.0], emittance = "blackbody 3200 K", intensity = 3.0 }]
-[glossy.ball]
-reflectance = "colorchecker blue"
-highlight = 0.3
-exponent = 50
-refractive_index = 1.5
-[glossy.tiles]
-reflectance = "colorchecker yellow"
-checker = { reflectance = "colorchecker red", size_m = 0.3 }
-highlight = 0.1
-exponent = 20
-refractive_index = 1.4
-[mirror.copper]
-reflectance = [[400, 0.4], [560, 0.5], [620, 0.9], [700, 0.95]]
-"#;
-
-    /// The radiance of a tree at one wavelength, straight from the definition in double precision.
-    fn radiance(scene: &Scene, tree: &RayTree, nm: f64) -> f64 {
-        let white = Spectrum::constant(1.0);
-        let reflectance = |index: ReflectanceIndex| {
-            let own = scene.reflectances.get(usize::from(index));
-            own.unwrap_or(&white).at(nm)
-        };
-        let power = |emission: &Emission| emission.at(nm);
-        let hits = tree.nodes().iter().rev();
-        hits.fold(0.0, |mirrored, node| {
-            let ambient = scene.ambient.as_ref().map_or(0.0, |a| power(&a.emission));
-            let body = reflectance(node.body);
-            let lights = scene.lights.iter().enumerate().map(|(place, light)| {
-                let scattered = f64::from(node.scattered[place]);
-                let highlight = f64::from(node.highlights[place]);
-                power(&light.emission) * (body * scattered + highlight)
-            });
-            lights.sum::<f64>()
-                + body * f64::from(node.scattered_ambient) * ambient
-                + reflectance(node.mirror) * f64::from(node.mirrored) * mirrored
-        })
-    }
-
-    fn at_1_nm(scene: &Scene, tree: &RayTree, channel: Channel) -> f64 {
-        let products = sensitivities()
-            .iter()
-            .map(|row| row.ac1c2[channel] * radiance(scene, tree, row.wavelength_nm));
-        products.sum::<f64>() / cie::sum_of_y()
-    }
-
-    #[test]
-    fn a_channel_is_the_full_sum_at_1_nm_within_the_error_of_16_bands() {
-        let scene = Scene::from_toml(Path::new("test.toml"), SCENE).unwrap();
-        let sampler = scene.sampler(Quadrature::Bands(16), [320, 320]);
-        let (mut tree, mut depth, mut most) = (RayTree::default(), 0, 0.0);
-        for (x, y) in (0..40).flat_map(|x| (0..40).map(move |y| (x, y))) {
-            let (x, y) = (f64::from(x) / 40.0 + 0.013, f64::from(y) / 40.0 + 0.007);
-            sampler.intersect(ScreenPoint { x, y }, &mut tree);
-            depth = depth.max(tree.nodes().len());
-            for channel in Channel::ALL {
-                let exact = at_1_nm(&scene, &tree, channel);
-                let error = (f64::from(sampler.shade(&tree, channel)) - exact).abs();
-                most = f64::max(most, error);
-            }
-        }
-        // 0.36 CIEDE2000, the largest error over the ColorChecker, is about 0.004 of white in a channel.
-        assert!(most < 0.004, "an error of {most}");
-        assert!(
-            depth >= 4,
-            "the scene should mirror mirrors, found {depth} hits"
-        );
-    }
 }

@@ -42,15 +42,19 @@ impl Bounds {
         }
     }
 
+    /// The corner of the least coordinates.
+    pub(crate) const fn low(&self) -> Vector {
+        self.low
+    }
+
+    /// The corner of the greatest coordinates.
+    pub(crate) const fn high(&self) -> Vector {
+        self.high
+    }
+
     /// The middle.
     pub(crate) fn center(&self) -> Vector {
         (self.low + self.high) * 0.5
-    }
-
-    /// Half of the surface: proportional to the chance that a ray meets the box.
-    pub(crate) fn half_area(&self) -> f64 {
-        let size = self.high - self.low;
-        size.x * size.y + size.y * size.z + size.z * size.x
     }
 
     /// Where the ray enters the box, if it does so within the span.

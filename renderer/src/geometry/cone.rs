@@ -87,7 +87,7 @@ impl Cone {
     pub(crate) fn surface_point(&self, place: Vector, part: Part) -> SurfacePoint {
         let offset = place - self.base;
         match part {
-            Part::Side => SurfacePoint {
+            Part::Side | Part::Face(_) => SurfacePoint {
                 u_m: self.radius_m * self.frame.angle_rad(offset),
                 v_m: offset.dot(self.frame.axis) * (1.0 + self.taper() * self.taper()).sqrt(),
             },

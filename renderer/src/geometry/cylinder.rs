@@ -72,7 +72,7 @@ impl Cylinder {
         let axis = self.frame.axis;
         let offset = place - self.base;
         match part {
-            Part::Side => (offset - axis * offset.dot(axis)).normalized(),
+            Part::Side | Part::Face(_) => (offset - axis * offset.dot(axis)).normalized(),
             Part::Cap if offset.dot(axis) < 0.5 * self.height_m => -axis,
             Part::Cap => axis,
         }
@@ -82,7 +82,7 @@ impl Cylinder {
     pub(crate) fn surface_point(&self, place: Vector, part: Part) -> SurfacePoint {
         let offset = place - self.base;
         match part {
-            Part::Side => SurfacePoint {
+            Part::Side | Part::Face(_) => SurfacePoint {
                 u_m: self.radius_m * self.frame.angle_rad(offset),
                 v_m: offset.dot(self.frame.axis),
             },

@@ -27,6 +27,11 @@ impl Frame {
         }
     }
 
+    /// The two directions across the axis.
+    pub(crate) const fn sides(&self) -> [Vector; 2] {
+        [self.across, self.along]
+    }
+
     /// The coordinates across the axis.
     pub(crate) fn flat(&self, offset: Vector) -> SurfacePoint {
         SurfacePoint {

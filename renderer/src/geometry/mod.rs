@@ -4,6 +4,7 @@
 //! closed or flat and is seen from both sides; surface coordinates are in metres along the surface.
 
 pub(crate) mod bounds;
+pub(crate) mod box_tree;
 pub(crate) mod cone;
 pub(crate) mod cuboid;
 pub(crate) mod cylinder;
@@ -11,6 +12,7 @@ pub(crate) mod disc;
 pub(crate) mod frame;
 pub(crate) mod ground;
 pub(crate) mod hierarchy;
+pub(crate) mod mesh;
 pub(crate) mod ray;
 pub(crate) mod rectangle;
 pub(crate) mod shape;
@@ -18,6 +20,7 @@ pub(crate) mod sphere;
 pub(crate) mod vector;
 
 pub(crate) use bounds::Bounds;
+pub(crate) use box_tree::BoxTree;
 pub(crate) use cone::Cone;
 pub(crate) use cuboid::Cuboid;
 pub(crate) use cylinder::Cylinder;
@@ -25,6 +28,7 @@ pub(crate) use disc::Disc;
 pub(crate) use frame::Frame;
 pub(crate) use ground::Ground;
 pub(crate) use hierarchy::Hierarchy;
+pub(crate) use mesh::{Mesh, MeshParts};
 pub(crate) use ray::{Hit, Part, Ray, Span, SurfacePoint};
 pub(crate) use rectangle::Rectangle;
 pub(crate) use shape::Shape;

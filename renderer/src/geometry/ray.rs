@@ -43,6 +43,8 @@ pub(crate) enum Part {
     Side,
     /// A flat end of a cylinder or a cone.
     Cap,
+    /// A face of a mesh.
+    Face(u32),
 }
 
 /// Where along a ray a shape was met.

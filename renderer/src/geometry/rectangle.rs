@@ -61,4 +61,10 @@ impl Rectangle {
             v_m: offset.dot(self.v),
         }
     }
+
+    /// The part of each edge that the place is along.
+    pub(crate) fn texture_point(&self, place: Vector) -> [f64; 2] {
+        let SurfacePoint { u_m, v_m } = self.surface_point(place);
+        [u_m / self.width_m, v_m / self.height_m]
+    }
 }

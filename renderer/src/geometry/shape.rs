@@ -1,12 +1,14 @@
 //! Any of the shapes of a scene.
 
+use std::sync::Arc;
+
 use super::{
-    Bounds, Cone, Cuboid, Cylinder, Disc, Ground, Hit, Part, Ray, Rectangle, Span, Sphere,
+    Bounds, Cone, Cuboid, Cylinder, Disc, Ground, Hit, Mesh, Part, Ray, Rectangle, Span, Sphere,
     SurfacePoint, Vector,
 };
 
 /// One shape.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) enum Shape {
     Sphere(Sphere),
     Cuboid(Cuboid),
@@ -15,6 +17,8 @@ pub(crate) enum Shape {
     Disc(Disc),
     Rectangle(Rectangle),
     Ground(Ground),
+    #[cfg_attr(not(test), expect(dead_code, reason = "no reader makes one yet"))]
+    Mesh(Arc<Mesh>),
 }
 
 impl Shape {
@@ -28,7 +32,18 @@ impl Shape {
             Self::Disc(disc) => Some(disc.bounds()),
             Self::Rectangle(rectangle) => Some(rectangle.bounds()),
             Self::Ground(_) => None,
+            Self::Mesh(mesh) => mesh.bounds(),
         }
+    }
+
+    /// Whether the shape has no end, so that no box holds it.
+    pub(crate) const fn is_endless(&self) -> bool {
+        matches!(self, Self::Ground(_))
+    }
+
+    /// Whether the shape encloses a space, as far as can be known: a mesh is believed to.
+    pub(crate) const fn is_closed(&self) -> bool {
+        !matches!(self, Self::Disc(_) | Self::Rectangle(_))
     }
 
     /// The first hit within the span.
@@ -42,6 +57,16 @@ impl Shape {
             Self::Disc(disc) => disc.hit(ray, span),
             Self::Rectangle(rectangle) => rectangle.hit(ray, span),
             Self::Ground(ground) => ground.hit(ray, span),
+            Self::Mesh(mesh) => mesh.hit(ray, span),
+        }
+    }
+
+    /// Whether anything is hit within the span.
+    #[inline]
+    pub(crate) fn is_hit(&self, ray: &Ray, span: Span) -> bool {
+        match self {
+            Self::Mesh(mesh) => mesh.is_hit(ray, span),
+            other => other.hit(ray, span).is_some(),
         }
     }
 
@@ -55,6 +80,18 @@ impl Shape {
             Self::Disc(disc) => disc.normal(),
             Self::Rectangle(rectangle) => rectangle.normal(),
             Self::Ground(_) => Vector::UP,
+            Self::Mesh(mesh) => match part {
+                Part::Face(face) => mesh.flat_normal(face),
+                Part::Side | Part::Cap => Vector::UP,
+            },
+        }
+    }
+
+    /// The unit normal by which light is reckoned, if it is another than that of the surface.
+    pub(crate) fn smooth_normal(&self, place: Vector, part: Part) -> Option<Vector> {
+        match (self, part) {
+            (Self::Mesh(mesh), Part::Face(face)) => mesh.smooth_normal(face, place),
+            _ => None,
         }
     }
 
@@ -68,6 +105,26 @@ impl Shape {
             Self::Disc(disc) => disc.surface_point(place),
             Self::Rectangle(rectangle) => rectangle.surface_point(place),
             Self::Ground(_) => Ground::surface_point(place),
+            Self::Mesh(_) => {
+                let [u_m, v_m] = self.texture_point(place, part);
+                SurfacePoint { u_m, v_m }
+            }
+        }
+    }
+
+    /// The place in a texture, which covers the square from 0 to 1: that of a mesh's own, the edges of a
+    /// rectangle, or the surface coordinates in metres.
+    pub(crate) fn texture_point(&self, place: Vector, part: Part) -> [f64; 2] {
+        match (self, part) {
+            (Self::Mesh(mesh), Part::Face(face)) => {
+                mesh.texture_point(face, place).unwrap_or_default()
+            }
+            (Self::Mesh(_), Part::Side | Part::Cap) => [0.0; 2],
+            (Self::Rectangle(rectangle), _) => rectangle.texture_point(place),
+            (other, _) => {
+                let SurfacePoint { u_m, v_m } = other.surface_point(place, part);
+                [u_m, v_m]
+            }
         }
     }
 }
@@ -270,7 +327,7 @@ mod tests {
             ]);
         }
         // The same rectangle twice: of equal hits the first shape's counts.
-        shapes.push(shapes[6]);
+        shapes.push(shapes[6].clone());
         let hierarchy = Hierarchy::over(shapes.clone());
         let mut hits = 0;
         for _ in 0..20_000 {

@@ -17,6 +17,10 @@ pub(super) struct SceneFile {
     #[serde(default)]
     pub(super) point_light: Vec<PointLightTable>,
     #[serde(default)]
+    pub(super) rectangle_light: Vec<RectangleLightTable>,
+    #[serde(default)]
+    pub(super) sphere_light: Vec<SphereLightTable>,
+    #[serde(default)]
     pub(super) reflectances: BTreeMap<String, SpectrumValue>,
     #[serde(default)]
     pub(super) diffuse: BTreeMap<String, DiffuseTable>,
@@ -24,6 +28,8 @@ pub(super) struct SceneFile {
     pub(super) glossy: BTreeMap<String, GlossyTable>,
     #[serde(default)]
     pub(super) mirror: BTreeMap<String, MirrorTable>,
+    #[serde(default)]
+    pub(super) glass: BTreeMap<String, GlassTable>,
     #[serde(default)]
     pub(super) sphere: Vec<SphereTable>,
     #[serde(default, rename = "box")]
@@ -76,6 +82,29 @@ pub(super) struct PointLightTable {
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
+pub(super) struct RectangleLightTable {
+    pub(super) name: Option<String>,
+    pub(super) corner_m: [f64; 3],
+    pub(super) edge_u_m: [f64; 3],
+    pub(super) edge_v_m: [f64; 3],
+    pub(super) emittance: SpectrumValue,
+    pub(super) luminance: f64,
+    pub(super) samples: u32,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SphereLightTable {
+    pub(super) name: Option<String>,
+    pub(super) center_m: [f64; 3],
+    pub(super) radius_m: f64,
+    pub(super) emittance: SpectrumValue,
+    pub(super) luminance: f64,
+    pub(super) samples: u32,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct DiffuseTable {
     pub(super) reflectance: SpectrumValue,
     pub(super) checker: Option<CheckerTable>,
@@ -97,6 +126,14 @@ pub(super) struct GlossyTable {
 #[serde(deny_unknown_fields)]
 pub(super) struct MirrorTable {
     pub(super) reflectance: SpectrumValue,
+    pub(super) highlight: Option<f64>,
+    pub(super) exponent: Option<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GlassTable {
+    pub(super) refractive_index: f64,
     pub(super) highlight: Option<f64>,
     pub(super) exponent: Option<f64>,
 }

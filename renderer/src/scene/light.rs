@@ -1,6 +1,8 @@
 //! What lights a scene, and what of it arrives at a place.
 
-use crate::geometry::Vector;
+use std::f64::consts::{PI, TAU};
+
+use crate::geometry::{Frame, Rectangle, Shape, Sphere, Vector};
 use crate::spectra::Emission;
 
 /// A light that casts shadows.
@@ -21,6 +23,30 @@ pub(crate) enum Source {
         towards: Vector,
         illuminance: f64,
     },
+    /// From a surface that is equally bright everywhere and in all directions.
+    Area(AreaLight),
+}
+
+/// A surface that shines; a perfect white diffuser under the illuminance 1 has the luminance 1.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AreaLight {
+    pub(crate) luminance: f64,
+    /// Shadow rays go to one place in each cell of a grid with this many cells along each side.
+    pub(crate) side: u32,
+    pub(crate) surface: AreaSurface,
+}
+
+/// The surface of an area light.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum AreaSurface {
+    /// A rectangle that shines to the side from which its edges u, v turn counter-clockwise.
+    Rectangle {
+        corner: Vector,
+        edge_u: Vector,
+        edge_v: Vector,
+    },
+    /// A sphere that shines outwards.
+    Sphere { center: Vector, radius_m: f64 },
 }
 
 /// Light that would arrive at a place if nothing were in its way.
@@ -34,7 +60,29 @@ pub(crate) struct Arrival {
     pub(crate) illuminance: f64,
 }
 
+impl Arrival {
+    /// From a place of an area light, which is itself a surface and must not cast its own shadow.
+    fn from_surface(path: Vector, distance_m: f64, illuminance: f64) -> Self {
+        Self {
+            towards: path * distance_m.recip(),
+            distance_m: distance_m - OWN_SURFACE_M,
+            illuminance,
+        }
+    }
+
+    /// No light.
+    const DARK: Self = Self {
+        towards: Vector::UP,
+        distance_m: 0.0,
+        illuminance: 0.0,
+    };
+}
+
+/// By how much a shadow ray ends before the surface of an area light.
+const OWN_SURFACE_M: f64 = 1e-6;
+
 impl Source {
+    /// What arrives from a light without extent; of an area light, nothing.
     #[inline]
     pub(crate) fn arrival(&self, place: Vector) -> Arrival {
         match *self {
@@ -58,6 +106,78 @@ impl Source {
                 distance_m: f64::INFINITY,
                 illuminance,
             },
+            Self::Area(_) => Arrival::DARK,
+        }
+    }
+
+    /// How bright the light looks; lights without extent cannot be seen.
+    pub(crate) fn luminance(&self) -> f64 {
+        match self {
+            Self::Point { .. } | Self::Distant { .. } => 0.0,
+            Self::Area(area) => area.luminance,
+        }
+    }
+}
+
+impl AreaLight {
+    /// What arrives if the whole light were as the place of it with these coordinates from 0 to 1: the mean
+    /// over uniform coordinates is the illuminance of the light.
+    ///
+    /// ```text
+    /// rectangle   L A cos θ / (π d²), θ at the light
+    /// sphere      L Ω / π, Ω the solid angle of the sphere; directions are uniform in it
+    /// ```
+    pub(crate) fn arrival(&self, place: Vector, at: [f64; 2]) -> Arrival {
+        match self.surface {
+            AreaSurface::Rectangle {
+                corner,
+                edge_u,
+                edge_v,
+            } => {
+                let path = corner + edge_u * at[0] + edge_v * at[1] - place;
+                let distance_m = path.length();
+                // The length of the cross product is the area.
+                let facing = -path.dot(edge_u.cross(edge_v)) / distance_m;
+                let illuminance = facing.max(0.0) / (PI * distance_m * distance_m);
+                Arrival::from_surface(path, distance_m, self.luminance * illuminance)
+            }
+            AreaSurface::Sphere { center, radius_m } => {
+                self.arrival_of_sphere(center - place, radius_m, at)
+            }
+        }
+    }
+
+    fn arrival_of_sphere(&self, to_center: Vector, radius_m: f64, at: [f64; 2]) -> Arrival {
+        let center_m = to_center.length();
+        let sin_squared = (radius_m / center_m) * (radius_m / center_m);
+        if sin_squared >= 1.0 {
+            return Arrival::DARK;
+        }
+        // 1 - cos of the half angle, without cancellation.
+        let height = sin_squared / (1.0 + (1.0 - sin_squared).sqrt());
+        let cos = 1.0 - at[0] * height;
+        let sin = (1.0 - cos * cos).max(0.0).sqrt();
+        let turn_rad = TAU * at[1];
+        let frame = Frame::about(to_center * center_m.recip());
+        let [across, along] = frame.sides();
+        let towards = frame.axis * cos
+            + across * (sin * libm::cos(turn_rad))
+            + along * (sin * libm::sin(turn_rad));
+        let half_chord_squared = radius_m * radius_m - center_m * center_m * sin * sin;
+        let distance_m = center_m * cos - half_chord_squared.max(0.0).sqrt();
+        let path = towards * distance_m;
+        Arrival::from_surface(path, distance_m, self.luminance * 2.0 * height)
+    }
+
+    /// The light as a shape that can be seen.
+    pub(crate) fn shape(&self) -> Shape {
+        match self.surface {
+            AreaSurface::Rectangle {
+                corner,
+                edge_u,
+                edge_v,
+            } => Shape::Rectangle(Rectangle::new(corner, edge_u, edge_v)),
+            AreaSurface::Sphere { center, radius_m } => Shape::Sphere(Sphere { center, radius_m }),
         }
     }
 }

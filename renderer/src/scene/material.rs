@@ -1,29 +1,50 @@
 //! What a surface does with light: geometry here, spectra by reference.
 
-use crate::geometry::SurfacePoint;
+use crate::geometry::{SurfacePoint, Vector};
+use crate::spectra::Sigmoid;
 
 /// A place in the reflectances of the scene.
 pub(crate) type ReflectanceIndex = u16;
 
+/// A place in the textures of the scene.
+pub(crate) type TextureIndex = u16;
+
+/// The spectral reflectance of a place of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Reflectance {
+    /// One of the scene's.
+    Table(ReflectanceIndex),
+    /// A curve of its own.
+    Sigmoid(Sigmoid),
+}
+
 /// What a surface is made of.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Material {
     pub(crate) body: Option<Body>,
     pub(crate) highlight: Option<Highlight>,
     pub(crate) mirror: Option<Mirror>,
+    /// The light that the surface is, as a place among the lights of the scene.
+    pub(crate) emission: Option<u16>,
 }
 
 /// What scatters light evenly.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Body {
-    pub(crate) reflectance: ReflectanceIndex,
-    pub(crate) pattern: Option<Pattern>,
+pub(crate) enum Body {
+    /// The same everywhere.
+    Plain(ReflectanceIndex),
+    /// Two reflectances that take turns.
+    Patterned(Pattern),
+    /// A picture on the surface.
+    #[expect(dead_code, reason = "no reader makes one yet")]
+    Textured(TextureIndex),
 }
 
 /// A second reflectance in every other place of a surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pattern {
     pub(crate) layout: PatternLayout,
+    pub(crate) reflectance: ReflectanceIndex,
     pub(crate) other: ReflectanceIndex,
 }
 
@@ -61,6 +82,8 @@ pub(crate) enum Mirror {
     },
     /// A clear coat: Fresnel's formula, the same at every wavelength.
     Coat { refractive_index: f64 },
+    /// A clear solid: mirrors by Fresnel's formula and passes the rest on by Snell's law.
+    Glass { refractive_index: f64 },
 }
 
 impl Highlight {
@@ -89,13 +112,14 @@ impl Highlight {
     }
 }
 
-impl Body {
-    /// The reflectance at a place of the surface; `place` is only asked for if there is a pattern.
+impl Pattern {
+    /// The reflectance at a place of the surface.
     #[inline]
-    pub(crate) fn reflectance_at(&self, place: impl FnOnce() -> SurfacePoint) -> ReflectanceIndex {
-        match self.pattern {
-            Some(pattern) if pattern.layout.is_other(place()) => pattern.other,
-            _ => self.reflectance,
+    pub(crate) fn reflectance_at(&self, place: SurfacePoint) -> ReflectanceIndex {
+        if self.layout.is_other(place) {
+            self.other
+        } else {
+            self.reflectance
         }
     }
 }
@@ -128,6 +152,37 @@ pub(crate) fn fresnel_reflectance(cos_incidence: f64, refractive_index: f64) -> 
     0.5 * (across * across + along * along)
 }
 
+/// What becomes of a ray at the surface of glass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Refraction {
+    /// The part that is mirrored.
+    pub(crate) reflectance: f64,
+    /// The unit direction of the rest; `None` if all is mirrored.
+    pub(crate) direction: Option<Vector>,
+}
+
+/// Snell's law and Fresnel's formula for unpolarised light.
+///
+/// `direction` arrives at the side to which the unit `normal` points; `relative_index` is the refractive
+/// index beyond the surface divided by that before it.
+pub(crate) fn refraction(direction: Vector, normal: Vector, relative_index: f64) -> Refraction {
+    let cos_incidence = (-direction.dot(normal)).clamp(0.0, 1.0);
+    let sin_squared = (1.0 - cos_incidence * cos_incidence) / (relative_index * relative_index);
+    if sin_squared >= 1.0 {
+        return Refraction {
+            reflectance: 1.0,
+            direction: None,
+        };
+    }
+    let cos_beyond = (1.0 - sin_squared).sqrt();
+    let bent =
+        direction * relative_index.recip() + normal * (cos_incidence / relative_index - cos_beyond);
+    Refraction {
+        reflectance: fresnel_reflectance(cos_incidence, relative_index),
+        direction: Some(bent.normalized()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -142,6 +197,32 @@ mod tests {
         let brewster = (1.0 + n * n).sqrt().recip();
         let across = (n * n - 1.0) / (n * n + 1.0);
         assert!((fresnel_reflectance(brewster, n) - 0.5 * across * across).abs() < 1e-15);
+    }
+
+    #[test]
+    fn glass_bends_light_as_snell_says_and_mirrors_all_beyond_the_critical_angle() {
+        let n = 1.5_f64;
+        let down = |angle_rad: f64| Vector::new(angle_rad.sin(), 0.0, -angle_rad.cos());
+        for angle_deg in [0.0_f64, 10.0, 30.0, 60.0, 89.0] {
+            let (angle_rad, inside_rad) = (angle_deg.to_radians(), {
+                let sin: f64 = angle_deg.to_radians().sin() / n;
+                sin.asin()
+            });
+            let entering = refraction(down(angle_rad), Vector::UP, n);
+            let inside = entering.direction.unwrap();
+            assert!((inside - down(inside_rad)).length() < 1e-12);
+            // The way back: the same share, the same angle.
+            let leaving = refraction(inside, Vector::UP, n.recip());
+            assert!((leaving.direction.unwrap() - down(angle_rad)).length() < 1e-12);
+            assert!((leaving.reflectance - entering.reflectance).abs() < 1e-12);
+        }
+        let straight = refraction(down(0.0), Vector::UP, n).reflectance;
+        assert!((straight - ((n - 1.0) / (n + 1.0)).powi(2)).abs() < 1e-15);
+        let critical_rad = n.recip().asin();
+        let least = refraction(down(critical_rad - 1e-6), Vector::UP, n.recip());
+        assert!(least.direction.is_some() && least.reflectance < 1.0);
+        let most = refraction(down(critical_rad + 1e-6), Vector::UP, n.recip());
+        assert_eq!((most.direction, most.reflectance), (None, 1.0));
     }
 
     #[test]

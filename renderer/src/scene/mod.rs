@@ -12,6 +12,11 @@
 //! `intensity · cos θ / d²`. Emittances are scaled to Y = 1 first, so that a light's colour does not change
 //! how bright it is. There is no other exposure.
 //!
+//! A `rectangle_light` or `sphere_light` is a surface of a `luminance`, 1 being the display's white; it is
+//! seen, is mirrored, and casts soft shadows by `samples` × `samples` shadow rays. A rectangle shines to
+//! the side from which its edge u turns to its edge v counter-clockwise. What a mirror, a coat or glass
+//! shows of it needs no highlight, so there is none.
+//!
 //! Ambient light is that of an evenly bright upper half of the sphere that nothing blocks: a surface whose
 //! normal rises by the sine s receives `illuminance · (1 + s) / 2`.
 //!
@@ -22,6 +27,7 @@
 //! | `[diffuse.NAME]` | Lambert's law with a spectral `reflectance` |
 //! | `[glossy.NAME]` | the same, and `highlight · (cos α)^exponent` of each light, α from the mirrored direction (Phong 1975); with `refractive_index` also a clear coat that mirrors by Fresnel's formula, the body taking the rest |
 //! | `[mirror.NAME]` | a mirror of a spectral `reflectance` |
+//! | `[glass.NAME]` | a clear solid of a `refractive_index`: mirrors by Fresnel's formula, passes the rest on by Snell's law; for closed shapes |
 //!
 //! `diffuse` and `glossy` may have `checker` or `stripes`: a second reflectance in every other square or
 //! stripe along the surface. A reflectance is the name of an entry of `[reflectances]`, the name of a
@@ -34,17 +40,21 @@
 //!
 //! # Simplifications
 //!
-//! Lights cast hard shadows, mirrors do not pass light on to diffuse surfaces, nothing is transparent. A
-//! ray that leaves the scene finds black.
+//! Mirrors and glass do not pass light on to diffuse surfaces: glass casts a full shadow. Glass is the same
+//! at every wavelength, takes nothing away, and has air on its other side. A ray that leaves the scene finds
+//! black. No path has more than 8 hits or 4 metal mirrors, no ray tree more than 32 hits, and a ray that
+//! counts for less than 1/1024 is not followed.
 
 pub(crate) mod camera;
 mod file;
 pub(crate) mod light;
+mod lights;
 pub(crate) mod material;
 mod palette;
 mod reader;
 mod shapes;
 mod table;
+pub(crate) mod texture;
 
 use std::path::Path;
 
@@ -57,6 +67,7 @@ use crate::spectra::Spectrum;
 use camera::Camera;
 use light::{Ambient, Light};
 use material::Material;
+use texture::Texture;
 
 /// A scene that can be rendered: read whole, checked whole.
 #[derive(Clone, Debug)]
@@ -68,6 +79,8 @@ pub struct Scene {
     pub(crate) materials: Vec<Material>,
     /// The reflectances that materials refer to.
     pub(crate) reflectances: Vec<Spectrum>,
+    /// The pictures that materials refer to.
+    pub(crate) textures: Vec<Texture>,
     pub(crate) lights: Vec<Light>,
     pub(crate) ambient: Option<Ambient>,
 }

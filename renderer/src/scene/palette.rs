@@ -40,8 +40,7 @@ impl Palette {
             let body = palette.body(&known, place, &table.reflectance, pattern)?;
             let material = Material {
                 body: Some(body),
-                highlight: None,
-                mirror: None,
+                ..Material::default()
             };
             palette.add(place, name, material)?;
         }
@@ -59,6 +58,7 @@ impl Palette {
                 body: Some(body),
                 highlight: Some(highlight(place, table.highlight, table.exponent)?),
                 mirror: coat,
+                ..Material::default()
             };
             palette.add(place, name, material)?;
         }
@@ -67,16 +67,21 @@ impl Palette {
             let spectrum = known.reflectance(place, "reflectance", &table.reflectance)?;
             let peak = spectrum.peak();
             let reflectance = palette.index(place, spectrum)?;
-            let highlight = match (table.highlight, table.exponent) {
-                (None, None) => None,
-                (Some(strength), Some(exponent)) => Some(highlight(place, strength, exponent)?),
-                (Some(_), None) => return Err(alone(place, "exponent", "highlight")),
-                (None, Some(_)) => return Err(alone(place, "highlight", "exponent")),
-            };
             let material = Material {
-                body: None,
-                highlight,
+                highlight: optional_highlight(place, table.highlight, table.exponent)?,
                 mirror: Some(Mirror::Metal { reflectance, peak }),
+                ..Material::default()
+            };
+            palette.add(place, name, material)?;
+        }
+        for (name, table) in &scene.glass {
+            let place = known.table("glass", name);
+            let refractive_index =
+                place.number_within("refractive_index", table.refractive_index, (1.0, 4.0))?;
+            let material = Material {
+                highlight: optional_highlight(place, table.highlight, table.exponent)?,
+                mirror: Some(Mirror::Glass { refractive_index }),
+                ..Material::default()
             };
             palette.add(place, name, material)?;
         }
@@ -103,7 +108,7 @@ impl Palette {
             Some(_) => Err(place.error(
                 "(the table's name)",
                 format!("a second material \"{name}\""),
-                "each name once among diffuse, glossy and mirror",
+                "each name once among diffuse, glossy, mirror and glass",
             )),
         }
     }
@@ -135,10 +140,7 @@ impl Palette {
             (None, None) => {
                 let spectrum = known.reflectance(place, "reflectance", reflectance)?;
                 let reflectance = self.index(place, spectrum)?;
-                return Ok(Body {
-                    reflectance,
-                    pattern: None,
-                });
+                return Ok(Body::Plain(reflectance));
             }
             (Some(checker), None) => {
                 let size_m = place.length_m("checker.size_m", checker.size_m)?;
@@ -162,10 +164,11 @@ impl Palette {
         let other = known.reflectance(place, field, other)?;
         let reflectance = self.index(place, spectrum)?;
         let other = self.index(place, other)?;
-        Ok(Body {
+        Ok(Body::Patterned(Pattern {
+            layout,
             reflectance,
-            pattern: Some(Pattern { layout, other }),
-        })
+            other,
+        }))
     }
 }
 
@@ -300,6 +303,19 @@ fn highlight(place: Table<'_>, strength: f64, exponent: f64) -> Result<Highlight
     let strength = place.number_within("highlight", strength, (0.0, 100.0))?;
     let exponent = place.number_within("exponent", exponent, (1.0, 1e6))?;
     Ok(Highlight::new(strength, exponent))
+}
+
+fn optional_highlight(
+    place: Table<'_>,
+    strength: Option<f64>,
+    exponent: Option<f64>,
+) -> Result<Option<Highlight>, InputError> {
+    match (strength, exponent) {
+        (None, None) => Ok(None),
+        (Some(strength), Some(exponent)) => highlight(place, strength, exponent).map(Some),
+        (Some(_), None) => Err(alone(place, "exponent", "highlight")),
+        (None, Some(_)) => Err(alone(place, "highlight", "exponent")),
+    }
 }
 
 fn alone(place: Table<'_>, missing: &str, given: &str) -> InputError {

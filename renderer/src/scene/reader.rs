@@ -6,14 +6,14 @@ use protocols::InputError;
 
 use super::Scene;
 use super::camera::Camera;
-use super::file::{AmbientTable, CameraTable, SceneFile, SpectrumValue};
-use super::light::{Ambient, Light, Source};
-use super::palette::{Palette, linear_of_srgb, spectrum_of_points};
+use super::file::{AmbientTable, CameraTable, SceneFile};
+use super::light::{Ambient, Source};
+use super::lights::{emission, lights};
+use super::material::Material;
+use super::palette::Palette;
 use super::shapes::shapes;
 use super::table::Table;
 use crate::geometry::Hierarchy;
-use crate::ray_tree::MAX_LIGHTS;
-use crate::spectra::Emission;
 
 /// Reads the text of a scene file.
 pub(super) fn scene_from_toml(file: &Path, text: &str) -> Result<Scene, InputError> {
@@ -23,15 +23,29 @@ pub(super) fn scene_from_toml(file: &Path, text: &str) -> Result<Scene, InputErr
             .remedy("compare it with stimuli/scenes/opponent-solids.toml")
     })?;
     let palette = Palette::new(file, &scene)?;
-    let (shapes, material_of_shape) = shapes(file, &scene, &palette)?;
+    let (mut shapes, mut material_of_shape) = shapes(file, &scene, &palette)?;
     let ambient = scene.ambient.as_ref().map(|table| ambient(file, table));
+    let lights = lights(file, &scene)?;
+    let mut materials = palette.materials;
+    for (number, light) in (0..).zip(&lights) {
+        if let Source::Area(area) = &light.source {
+            let material = u16::try_from(materials.len()).unwrap_or(u16::MAX);
+            materials.push(Material {
+                emission: Some(number),
+                ..Material::default()
+            });
+            shapes.push(area.shape());
+            material_of_shape.push(material);
+        }
+    }
     Ok(Scene {
         camera: camera(file, &scene.camera)?,
         shapes: Hierarchy::over(shapes),
         material_of_shape,
-        materials: palette.materials,
+        materials,
         reflectances: palette.reflectances,
-        lights: lights(file, &scene)?,
+        textures: Vec::new(),
+        lights,
         ambient: ambient.transpose()?,
     })
 }
@@ -70,66 +84,5 @@ fn ambient(file: &Path, ambient: &AmbientTable) -> Result<Ambient, InputError> {
     Ok(Ambient {
         emission: emission(table, &ambient.emittance)?,
         illuminance: table.brightness("illuminance", ambient.illuminance)?,
-    })
-}
-
-fn lights(file: &Path, scene: &SceneFile) -> Result<Vec<Light>, InputError> {
-    let mut lights = Vec::new();
-    for (number, light) in (1..).zip(&scene.distant_light) {
-        let table = Table {
-            file,
-            kind: "distant_light",
-            number: Some(number),
-            name: light.name.as_deref(),
-        };
-        lights.push(Light {
-            emission: emission(table, &light.emittance)?,
-            source: Source::Distant {
-                towards: table.direction("from", light.from)?,
-                illuminance: table.brightness("illuminance", light.illuminance)?,
-            },
-        });
-    }
-    for (number, light) in (1..).zip(&scene.point_light) {
-        let table = Table {
-            file,
-            kind: "point_light",
-            number: Some(number),
-            name: light.name.as_deref(),
-        };
-        lights.push(Light {
-            emission: emission(table, &light.emittance)?,
-            source: Source::Point {
-                position: table.place("position_m", light.position_m)?,
-                intensity: table.brightness("intensity", light.intensity)?,
-            },
-        });
-    }
-    if (1..=MAX_LIGHTS).contains(&lights.len()) {
-        Ok(lights)
-    } else {
-        let found = format!("{} lights", lights.len());
-        let expected = format!("from 1 to {MAX_LIGHTS} of distant_light and point_light");
-        Err(InputError::new(file, found, expected))
-    }
-}
-
-fn emission(table: Table<'_>, emittance: &SpectrumValue) -> Result<Emission, InputError> {
-    let (emission, found) = match emittance {
-        SpectrumValue::Named(name) => (Emission::named(name), format!("\"{name}\"")),
-        SpectrumValue::Points(points) => {
-            let spectrum = spectrum_of_points(table, "emittance", points, 1e6)?;
-            let found = "control points without visible light".to_owned();
-            (Emission::of(spectrum), found)
-        }
-        SpectrumValue::Srgb(srgb) => {
-            let linear = linear_of_srgb(table, "emittance", *srgb)?;
-            (Emission::of_linear_srgb(linear), "black".to_owned())
-        }
-    };
-    emission.ok_or_else(|| {
-        let expected = "\"D65\", \"A\", \"E\", \"blackbody 3200 K\" (500 to 100000 K), or control \
-                        points [[nm, power], ...] with visible light, or { srgb = [r, g, b] }";
-        table.error("emittance", found, expected)
     })
 }

@@ -8,6 +8,7 @@ use super::file::{
     BoxTable, ConeTable, CylinderTable, DiscTable, GroundTable, RectangleTable, SceneFile,
     SphereTable,
 };
+use super::material::Mirror;
 use super::palette::Palette;
 use super::table::Table;
 use crate::geometry::{Cone, Cuboid, Cylinder, Disc, Ground, Rectangle, Shape, Sphere, Vector};
@@ -58,7 +59,14 @@ impl Objects<'_> {
                 name: object.name(),
             };
             let material = self.palette.material(table, object.material())?;
-            self.shapes.push(object.shape(table)?);
+            let shape = object.shape(table)?;
+            let mirror = self.palette.materials[usize::from(material)].mirror;
+            if matches!(mirror, Some(Mirror::Glass { .. })) && !shape.is_closed() {
+                let found = format!("\"{}\", which is glass", object.material());
+                let expected = "another material: only a closed shape can be of glass";
+                return Err(table.error("material", found, expected));
+            }
+            self.shapes.push(shape);
             self.materials.push(material);
         }
         Ok(())
@@ -174,13 +182,7 @@ impl ObjectTable for RectangleTable {
 
     fn shape(&self, table: Table<'_>) -> Result<Shape, InputError> {
         let corner = table.place("corner_m", self.corner_m)?;
-        let unit_u = table.direction("edge_u_m", self.edge_u_m)?;
-        let unit_v = table.direction("edge_v_m", self.edge_v_m)?;
-        if unit_u.dot(unit_v).abs() > 1e-6 {
-            let found = format!("{:?}", self.edge_v_m);
-            return Err(table.error("edge_v_m", found, "an edge at right angles to edge_u_m"));
-        }
-        let (edge_u, edge_v) = (self.edge_u_m.into(), self.edge_v_m.into());
+        let [edge_u, edge_v] = table.edges(self.edge_u_m, self.edge_v_m)?;
         Ok(Shape::Rectangle(Rectangle::new(corner, edge_u, edge_v)))
     }
 }

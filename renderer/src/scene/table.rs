@@ -91,6 +91,17 @@ impl Table<'_> {
         }
     }
 
+    /// The edges of a rectangle, `edge_u_m` and `edge_v_m`, which are at right angles.
+    pub(super) fn edges(&self, u: [f64; 3], v: [f64; 3]) -> Result<[Vector; 2], InputError> {
+        let unit_u = self.direction("edge_u_m", u)?;
+        let unit_v = self.direction("edge_v_m", v)?;
+        if unit_u.dot(unit_v).abs() > 1e-6 {
+            let expected = "an edge at right angles to edge_u_m";
+            return Err(self.error("edge_v_m", format!("{v:?}"), expected));
+        }
+        Ok([u.into(), v.into()])
+    }
+
     /// Two places that differ.
     pub(super) fn two_places(
         &self,

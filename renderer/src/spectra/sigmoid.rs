@@ -26,6 +26,14 @@ impl Sigmoid {
         sigmoid((c0 * t + c1) * t + c2)
     }
 
+    /// The reflectance at a wavelength in the unit of the quadratic, in single precision.
+    #[inline]
+    pub(crate) fn single_at(self, t: f32) -> f32 {
+        let [c0, c1, c2] = self.coefficients;
+        let x = (c0 * t + c1) * t + c2;
+        0.5 + 0.5 * x / (1.0 + x * x).sqrt()
+    }
+
     /// The largest reflectance from 360 to 830 nm: that of an end, or of the quadratic's top.
     pub(crate) fn peak(self) -> f64 {
         let [c0, c1, _] = self.coefficients.map(f64::from);

@@ -17,6 +17,22 @@ name = "lamp"
 position_m = [2, -4, 5]
 emittance = "D65"
 intensity = 20
+[[rectangle_light]]
+name = "panel"
+corner_m = [0, 0, 4]
+edge_u_m = [0, 1, 0]
+edge_v_m = [1, 0, 0]
+emittance = "E"
+luminance = 5
+samples = 4
+[[sphere_light]]
+center_m = [-3, 0, 4]
+radius_m = 0.25
+emittance = "A"
+luminance = 6
+samples = 3
+[glass.crown]
+refractive_index = 1.52
 [reflectances]
 rust = [[400, 0.1], [700, 0.6]]
 [diffuse.paint]
@@ -33,6 +49,52 @@ reflectance = [[550, 0.9]]
 
 /// A change of the good file, and what its error must say.
 const CASES: &[(&str, &str, &[&str])] = &[
+    (
+        "samples = 4",
+        "samples = 0",
+        &[
+            "rectangle_light 1 \"panel\"",
+            "field samples",
+            "found 0",
+            "from 1 to 64",
+        ],
+    ),
+    (
+        "samples = 3",
+        "samples = 65",
+        &["sphere_light 1", "field samples", "found 65"],
+    ),
+    ("samples = 3", "samples = 2.5", &["invalid type"]),
+    (
+        "luminance = 5",
+        "luminance = -5",
+        &["rectangle_light 1 \"panel\"", "field luminance", "found -5"],
+    ),
+    (
+        "radius_m = 0.25",
+        "radius_m = nan",
+        &["sphere_light 1", "field radius_m", "found NaN"],
+    ),
+    (
+        "edge_u_m = [0, 1, 0]\nedge_v_m",
+        "edge_u_m = [1, 1, 0]\nedge_v_m",
+        &["rectangle_light 1", "field edge_v_m", "right angles"],
+    ),
+    (
+        "refractive_index = 1.52",
+        "refractive_index = 0.5",
+        &["glass \"crown\"", "field refractive_index", "found 0.5"],
+    ),
+    (
+        "refractive_index = 1.52",
+        "refractive_index = 1.52\nhighlight = 0.1",
+        &["glass \"crown\"", "field exponent", "highlight is given"],
+    ),
+    (
+        "material = \"lacquer\", corner_m",
+        "material = \"crown\", corner_m",
+        &["rectangle 1", "field material", "only a closed shape"],
+    ),
     (
         "radius_m = 1 }",
         "radius_m = 0 }",
@@ -267,11 +329,13 @@ fn each_fault_is_named_with_its_place() {
 
 #[test]
 fn a_scene_needs_a_light_and_not_too_many() {
-    let lights = GOOD.find("[[point_light]]").unwrap()..GOOD.find("[reflectances]").unwrap();
+    let lights = GOOD.find("[[point_light]]").unwrap()..GOOD.find("[glass.crown]").unwrap();
     let none = GOOD.replace(&GOOD[lights.clone()], "");
     assert!(error_of(&none).unwrap().contains("found 0 lights"));
-    let five = GOOD.replace(&GOOD[lights.clone()], &GOOD[lights].repeat(5));
-    assert!(error_of(&five).unwrap().contains("found 5 lights"));
+    // Three in each copy.
+    let many = GOOD.replace(&GOOD[lights.clone()], &GOOD[lights].repeat(11));
+    let error = error_of(&many).unwrap();
+    assert!(error.contains("found 33 lights") && error.contains("from 1 to 32"));
 }
 
 #[test]

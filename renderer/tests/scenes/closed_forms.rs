@@ -221,3 +221,161 @@ fn the_wavelengths_that_are_shaded_are_those_that_count() {
         [16; 3]
     );
 }
+
+/// A scene of a rectangle light that faces down onto black ground but for what is asked.
+fn under_rectangle(samples: u32, rest: &str) -> Scene {
+    scene(&format!(
+        r#"{FROM_ABOVE}
+rectangle_light = [{{ corner_m = [0.5, -0.25, 0.8], edge_u_m = [0, 0.5, 0], edge_v_m = [1, 0, 0], emittance = "D65", luminance = 3, samples = {samples} }}]
+ground = [{{ material = "grey", height_m = 0 }}]
+{rest}
+[diffuse.grey]
+reflectance = [[400, 0.5]]
+"#
+    ))
+}
+
+/// The form factor from a small surface to a rectangle parallel to it, one corner of which is straight above
+/// it at the height `h`: Howell, *A Catalog of Radiation Heat Transfer Configuration Factors*, B-4.
+fn corner_factor(a: f64, b: f64, h: f64) -> f64 {
+    let (x, y) = (a / h, b / h);
+    let (rx, ry) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
+    (x / rx * (y / rx).atan() + y / ry * (x / ry).atan()) / std::f64::consts::TAU
+}
+
+#[test]
+fn a_rectangle_light_gives_the_form_factor_to_a_parallel_surface() {
+    let scene = under_rectangle(32, "");
+    let sampler = sampler(&scene);
+    for (x_m, y_m) in [(0.0, 0.0), (-1.2, 0.9), (1.6, -1.1), (0.2, 0.25)] {
+        // The rectangle from x = 0.5 to 1.5 and y = -0.25 to 0.25 as a sum of four with a corner overhead.
+        let f = |x: f64, y: f64| {
+            let (x, y) = (x - x_m, y - y_m);
+            corner_factor(x.abs(), y.abs(), 0.8).copysign(x * y)
+        };
+        let factor = f(1.5, 0.25) - f(0.5, 0.25) - f(1.5, -0.25) + f(0.5, -0.25);
+        let expected = 0.5 * 3.0 * factor * D65[0];
+        let ours = value(&sampler, (x_m + 2.0) / 4.0, (2.0 - y_m) / 4.0, Channel::A);
+        // One random place in each of 1024 cells: a stratified mean errs by about 1/1024 of the range.
+        assert!(
+            (ours / expected - 1.0).abs() < 2e-3,
+            "{ours} is not {expected}"
+        );
+    }
+}
+
+#[test]
+fn a_rectangle_light_is_seen_from_its_front_and_in_a_mirror_and_shines_to_its_front_alone() {
+    // From above its back is seen: black. A mirror on the ground under it shows its front.
+    let mirror = r#"
+disc = [{ material = "silver", center_m = [-0.2, 0, 0.001], normal = [0, 0, 1], radius_m = 0.1 }]
+[mirror.silver]
+reflectance = [[400, 0.6]]"#;
+    let scene = scene(&format!(
+        r#"
+camera = {{ position_m = [-1.4, 0, 0.8], look_at_m = [-0.2, 0, 0.001], up = [0, 0, 1], vertical_field_of_view_deg = 1 }}
+rectangle_light = [{{ corner_m = [0.5, -0.25, 0.8], edge_u_m = [0, 0.5, 0], edge_v_m = [1, 0, 0], emittance = "D65", luminance = 3, samples = 2 }}]
+{mirror}
+"#
+    ));
+    assert_near(
+        value(&sampler(&scene), 0.5, 0.5, Channel::A),
+        0.6 * 3.0 * D65[0],
+    );
+    let above = under_rectangle(2, "");
+    // The light stands between the camera at 2 m and the ground, at half of the screen's scale of 1.2 m.
+    let at = 0.5 + 1.0 / 2.4;
+    assert_eq!(value(&sampler(&above), at, 0.5, Channel::A), 0.0);
+}
+
+#[test]
+fn a_sphere_light_far_from_its_surface_is_a_point_and_overhead_is_known_exactly() {
+    // Straight under a sphere the form factor is (r/d)^2, however near.
+    let scene = scene(&format!(
+        r#"{FROM_ABOVE}
+sphere_light = [{{ center_m = [1, 0, 1], radius_m = 0.5, emittance = "D65", luminance = 2, samples = 16 }}]
+ground = [{{ material = "grey", height_m = 0 }}]
+[diffuse.grey]
+reflectance = [[400, 0.5]]
+"#
+    ));
+    let sampler = sampler(&scene);
+    // The camera does not see the ground under the sphere: the plane through the light's centre is tilted by
+    // the cosine only, E = L (r/d)^2 cos, as long as the whole sphere is above the horizon.
+    for x_m in [-1.5_f64, -0.5, 0.0] {
+        let d_squared = (x_m - 1.0).powi(2) + 1.0;
+        let expected = 0.5 * 2.0 * 0.25 / d_squared / d_squared.sqrt() * D65[0];
+        let ours = value(&sampler, (x_m + 2.0) / 4.0, 0.5, Channel::A);
+        assert!(
+            (ours / expected - 1.0).abs() < 1e-3,
+            "{ours} is not {expected}"
+        );
+    }
+}
+
+#[test]
+fn the_shadow_of_a_rectangle_light_is_soft_and_the_same_every_time() {
+    let blocker = r#"rectangle = [{ material = "grey", corner_m = [-0.3, -9, 0.4], edge_u_m = [0.6, 0, 0], edge_v_m = [0, 18, 0] }]"#;
+    let scene = under_rectangle(16, blocker);
+    let sampler = sampler(&scene);
+    // An edge at x = 0.3, 0.4 m high; the light from x = 0.5 to 1.5 at 0.8 m. The shadow of its near end falls
+    // on x = 0.1, that of its far end on x = -0.9: all dark between the edges' images, all light beyond.
+    let at_ground = |x_m: f64| value(&sampler, (x_m + 2.0) / 4.0, 0.001, Channel::A);
+    let open = under_rectangle(16, "");
+    let open = self::sampler(&open);
+    let unblocked = |x_m: f64| value(&open, (x_m + 2.0) / 4.0, 0.001, Channel::A);
+    let part = |x_m: f64| at_ground(x_m) / unblocked(x_m);
+    assert_eq!(part(0.32), 1.0);
+    assert!(part(-0.6) > 0.02 && part(-0.6) < 0.98);
+    assert_eq!(at_ground(-0.6), at_ground(-0.6));
+}
+
+#[test]
+fn a_slab_of_glass_passes_twice_one_minus_r_and_the_rays_between_its_faces() {
+    // Straight through: t = (1 - r)^2 (1 + r^2 + r^4 ...) = (1 - r)/(1 + r) of the bright wall behind it.
+    let text = format!(
+        r#"{FROM_ABOVE}
+box = [{{ material = "crown", center_m = [0, 0, 0.5], size_m = [9, 9, 0.2] }}]
+ground = [{{ material = "grey", height_m = 0 }}]
+ambient = {{ emittance = "D65", illuminance = 0.8 }}
+distant_light = [{{ from = [0, 0, -1], emittance = "E", illuminance = 1e-9 }}]
+[glass.crown]
+refractive_index = 1.5
+[diffuse.grey]
+reflectance = [[400, 0.5]]
+"#
+    );
+    let scene = scene(&text);
+    let r = 0.04;
+    let expected = 0.5 * 0.8 * (1.0 - r) / (1.0 + r) * D65[0];
+    let ours = value(&sampler(&scene), 0.5, 0.5, Channel::A);
+    // What bounces twice, r^2 = 0.0016, is followed; r^4 counts for less than 1/1024 and is not.
+    assert!((ours - expected).abs() < 1e-5, "{ours} is not {expected}");
+}
+
+#[test]
+fn a_slab_of_glass_shifts_what_is_behind_it() {
+    // At 45 degrees a slab of thickness t and index n shifts the ray by t (1 - tan r / tan i), sin r = sin i / n.
+    let text = r#"
+camera = { position_m = [-2, 0, 2], look_at_m = [0, 0, 0], up = [0, 0, 1], vertical_field_of_view_deg = 1 }
+box = [{ material = "crown", center_m = [0, 0, 1], size_m = [9, 9, 0.5] }]
+ground = [{ material = "tiles", height_m = 0 }]
+ambient = { emittance = "D65", illuminance = 1 }
+distant_light = [{ from = [0, 0, -1], emittance = "E", illuminance = 1e-9 }]
+[glass.crown]
+refractive_index = 1.5
+[diffuse.tiles]
+reflectance = [[400, 0.9]]
+checker = { reflectance = [[400, 0.0]], size_m = EDGE }
+"#;
+    let refracted = (45.0_f64.to_radians().sin() / 1.5).asin();
+    let shift_m = 0.5 * (1.0 - refracted.tan());
+    // Straight on the ray would meet x = 0; the slab lets it fall short by the shift.
+    for (edge_m, is_bright) in [(shift_m - 1e-4, true), (shift_m + 1e-4, false)] {
+        let text = text.replace("EDGE", &format!("{edge_m}"));
+        let scene = scene(&text);
+        let value = value(&sampler(&scene), 0.5, 0.5, Channel::A);
+        // Beyond one square to the left the colours have changed twice.
+        assert_eq!(value > 0.5, is_bright, "{value} with squares of {edge_m} m");
+    }
+}

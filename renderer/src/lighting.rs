@@ -1,0 +1,128 @@
+//! What the lights of a scene bring to a surface: illuminance, shadows, highlights.
+//!
+//! Lights without extent cast hard shadows; an area light is sampled at one place in each cell of a grid.
+//! Nothing shines through anything: glass too casts a full shadow.
+
+use crate::geometry::{Ray, Span, Vector};
+use crate::jitter::Jitter;
+use crate::sampler::ScreenPoint;
+use crate::scene::Scene;
+use crate::scene::light::{AreaLight, Arrival, Source};
+use crate::scene::material::Highlight;
+
+/// How far off a surface a new ray starts, so that it does not meet the same place again.
+pub(crate) const LIFT_M: f64 = 1e-6;
+
+/// A hit with what is needed to send rays on from it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Surface {
+    pub(crate) place: Vector,
+    /// Of the surface itself, towards the viewer's side.
+    pub(crate) facing: Vector,
+    /// By which light is reckoned: that of the surface, or a smooth one.
+    pub(crate) normal: Vector,
+    /// Of the mirrored ray.
+    pub(crate) mirrored: Vector,
+}
+
+/// What a surface makes of a light, whatever its colour.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Lit {
+    /// The illuminance.
+    pub(crate) illuminance: f64,
+    /// How bright the highlight is.
+    pub(crate) highlight: f64,
+}
+
+/// Which hit it is that light falls on: it says where on area lights the samples lie.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct HitKey {
+    pub(crate) at: ScreenPoint,
+    pub(crate) hit: u32,
+}
+
+/// What of a surface light can count for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Receiver {
+    pub(crate) has_body: bool,
+    pub(crate) highlight: Option<Highlight>,
+    /// It shows lights that have an extent, so that these need no highlight.
+    pub(crate) mirrors: bool,
+}
+
+impl Scene {
+    /// What arrives from one of the lights.
+    #[inline]
+    pub(crate) fn lit(
+        &self,
+        light: u16,
+        surface: &Surface,
+        receiver: Receiver,
+        key: HitKey,
+    ) -> Lit {
+        match &self.lights[usize::from(light)].source {
+            Source::Area(area) => {
+                let highlight = receiver.highlight.filter(|_| !receiver.mirrors);
+                let receiver = Receiver {
+                    highlight,
+                    ..receiver
+                };
+                self.lit_by_area(area, surface, receiver, Jitter::new(key.at, key.hit, light))
+            }
+            source => self.lit_from(&source.arrival(surface.place), surface, receiver),
+        }
+    }
+
+    fn lit_by_area(
+        &self,
+        light: &AreaLight,
+        surface: &Surface,
+        receiver: Receiver,
+        mut jitter: Jitter,
+    ) -> Lit {
+        let mut sum = Lit::default();
+        if !receiver.has_body && receiver.highlight.is_none() {
+            return sum;
+        }
+        for row in 0..light.side {
+            for column in 0..light.side {
+                let at = jitter.within([column, row], light.side);
+                let lit = self.lit_from(&light.arrival(surface.place, at), surface, receiver);
+                sum.illuminance += lit.illuminance;
+                sum.highlight += lit.highlight;
+            }
+        }
+        let samples = f64::from(light.side * light.side);
+        Lit {
+            illuminance: sum.illuminance / samples,
+            highlight: sum.highlight / samples,
+        }
+    }
+
+    #[inline]
+    fn lit_from(&self, arrival: &Arrival, surface: &Surface, receiver: Receiver) -> Lit {
+        let cos_incidence = arrival.towards.dot(surface.normal);
+        let is_behind = cos_incidence <= 0.0 || arrival.towards.dot(surface.facing) <= 0.0;
+        if is_behind || arrival.illuminance <= 0.0 {
+            return Lit::default();
+        }
+        let glint = receiver.highlight.map_or(0.0, |highlight| {
+            highlight.at(arrival.towards.dot(surface.mirrored))
+        });
+        if !receiver.has_body && glint == 0.0 {
+            return Lit::default();
+        }
+        let shadow_ray = Ray {
+            origin: surface.place + surface.facing * LIFT_M,
+            direction: arrival.towards,
+        };
+        let span = Span::up_to(arrival.distance_m);
+        if self.shapes.is_blocked(&shadow_ray, span) {
+            return Lit::default();
+        }
+        Lit {
+            illuminance: arrival.illuminance * cos_incidence,
+            highlight: arrival.illuminance * glint,
+        }
+    }
+}
