@@ -11,6 +11,9 @@ use std::ops::Range;
 use super::box_tree::Walk;
 use super::{Bounds, BoxTree, Hit, Part, Ray, Span, Vector};
 
+/// By how much a triangle is larger than its edges say, so that rounding opens no gap between neighbours.
+const SLACK: f64 = 1e-12;
+
 /// Triangles that share vertices.
 #[derive(Clone, Debug)]
 pub(crate) struct Mesh {
@@ -205,12 +208,12 @@ impl Triangle {
         let offset = ray.origin - a;
         let of_b = offset.dot(across) * inverse;
         // Not a number if the ray runs along the triangle: no comparison holds.
-        if !(0.0..=1.0).contains(&of_b) {
+        if !(-SLACK..=1.0 + SLACK).contains(&of_b) {
             return None;
         }
         let over = offset.cross(edge_b);
         let of_c = ray.direction.dot(over) * inverse;
-        if !(of_c >= 0.0 && of_b + of_c <= 1.0) {
+        if !(of_c >= -SLACK && of_b + of_c <= 1.0 + SLACK) {
             return None;
         }
         let distance_m = edge_c.dot(over) * inverse;
