@@ -25,6 +25,14 @@ pub(crate) struct Surface {
     pub(crate) mirrored: Vector,
 }
 
+impl Surface {
+    /// Just off the surface, on the viewer's side.
+    #[inline]
+    pub(crate) fn lifted(&self) -> Vector {
+        self.place + self.facing * LIFT_M
+    }
+}
+
 /// What a surface makes of a light, whatever its colour.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Lit {
@@ -84,10 +92,12 @@ impl Scene {
         if !receiver.has_body && receiver.highlight.is_none() {
             return sum;
         }
+        // From where the shadow rays start, so that each ends just before the light's own surface.
+        let start = surface.lifted();
         for row in 0..light.side {
             for column in 0..light.side {
                 let at = jitter.within([column, row], light.side);
-                let lit = self.lit_from(&light.arrival(surface.place, at), surface, receiver);
+                let lit = self.lit_from(&light.arrival(start, at), surface, receiver);
                 sum.illuminance += lit.illuminance;
                 sum.highlight += lit.highlight;
             }
@@ -113,7 +123,7 @@ impl Scene {
             return Lit::default();
         }
         let shadow_ray = Ray {
-            origin: surface.place + surface.facing * LIFT_M,
+            origin: surface.lifted(),
             direction: arrival.towards,
         };
         let span = Span::up_to(arrival.distance_m);

@@ -205,7 +205,7 @@ fn refracted(ray: &Ray, place: Vector, normal: Vector, n: f64) -> (f64, Option<R
     };
     let through = Ray {
         origin: place - normal * 1e-6,
-        direction: side * sin_beyond - normal * sin_beyond.asin().cos(),
+        direction: side * sin_beyond - normal * libm::cos(libm::asin(sin_beyond)),
     };
     (fresnel_reflectance(cos, n), Some(through))
 }

@@ -263,7 +263,7 @@ impl Surface {
 
     fn mirrored_ray(&self) -> Ray {
         Ray {
-            origin: self.place + self.facing * LIFT_M,
+            origin: self.lifted(),
             direction: self.mirrored,
         }
     }

@@ -32,7 +32,7 @@ emittance = "A"
 luminance = 6
 samples = 3
 [glass.crown]
-refractive_index = 1.52
+refractive_index = 1.33
 [reflectances]
 rust = [[400, 0.1], [700, 0.6]]
 [diffuse.paint]
@@ -81,13 +81,13 @@ const CASES: &[(&str, &str, &[&str])] = &[
         &["rectangle_light 1", "field edge_v_m", "right angles"],
     ),
     (
-        "refractive_index = 1.52",
+        "refractive_index = 1.33",
         "refractive_index = 0.5",
         &["glass \"crown\"", "field refractive_index", "found 0.5"],
     ),
     (
-        "refractive_index = 1.52",
-        "refractive_index = 1.52\nhighlight = 0.1",
+        "refractive_index = 1.33",
+        "refractive_index = 1.33\nhighlight = 0.1",
         &["glass \"crown\"", "field exponent", "highlight is given"],
     ),
     (
@@ -118,7 +118,7 @@ const CASES: &[(&str, &str, &[&str])] = &[
     (
         "material = \"paint\", center_m = [0",
         "material = \"pant\", center_m = [0",
-        &["\"pant\"", "chrome, lacquer, paint"],
+        &["\"pant\"", "chrome, crown, lacquer, paint"],
     ),
     (
         "center_m = [0, 0, 0]",

@@ -243,17 +243,22 @@ fn corner_factor(a: f64, b: f64, h: f64) -> f64 {
     (x / rx * (y / rx).atan() + y / ry * (x / ry).atan()) / std::f64::consts::TAU
 }
 
+/// The same to the part of the light between two x, as a sum of four rectangles with a corner overhead.
+fn rectangle_factor(between_x: [f64; 2], [x_m, y_m]: [f64; 2]) -> f64 {
+    let f = |x: f64, y: f64| {
+        let (x, y) = (x - x_m, y - y_m);
+        corner_factor(x.abs(), y.abs(), 0.8).copysign(x * y)
+    };
+    let [from, to] = between_x;
+    f(to, 0.25) - f(from, 0.25) - f(to, -0.25) + f(from, -0.25)
+}
+
 #[test]
 fn a_rectangle_light_gives_the_form_factor_to_a_parallel_surface() {
     let scene = under_rectangle(32, "");
     let sampler = sampler(&scene);
     for (x_m, y_m) in [(0.0, 0.0), (-1.2, 0.9), (1.6, -1.1), (0.2, 0.25)] {
-        // The rectangle from x = 0.5 to 1.5 and y = -0.25 to 0.25 as a sum of four with a corner overhead.
-        let f = |x: f64, y: f64| {
-            let (x, y) = (x - x_m, y - y_m);
-            corner_factor(x.abs(), y.abs(), 0.8).copysign(x * y)
-        };
-        let factor = f(1.5, 0.25) - f(0.5, 0.25) - f(1.5, -0.25) + f(0.5, -0.25);
+        let factor = rectangle_factor([0.5, 1.5], [x_m, y_m]);
         let expected = 0.5 * 3.0 * factor * D65[0];
         let ours = value(&sampler, (x_m + 2.0) / 4.0, (2.0 - y_m) / 4.0, Channel::A);
         // One random place in each of 1024 cells: a stratified mean errs by about 1/1024 of the range.
@@ -293,7 +298,7 @@ fn a_sphere_light_far_from_its_surface_is_a_point_and_overhead_is_known_exactly(
     // Straight under a sphere the form factor is (r/d)^2, however near.
     let scene = scene(&format!(
         r#"{FROM_ABOVE}
-sphere_light = [{{ center_m = [1, 0, 1], radius_m = 0.5, emittance = "D65", luminance = 2, samples = 16 }}]
+sphere_light = [{{ center_m = [1, 0, 1], radius_m = 0.5, emittance = "D65", luminance = 2, samples = 64 }}]
 ground = [{{ material = "grey", height_m = 0 }}]
 [diffuse.grey]
 reflectance = [[400, 0.5]]
@@ -316,17 +321,24 @@ reflectance = [[400, 0.5]]
 #[test]
 fn the_shadow_of_a_rectangle_light_is_soft_and_the_same_every_time() {
     let blocker = r#"rectangle = [{ material = "grey", corner_m = [-0.3, -9, 0.4], edge_u_m = [0.6, 0, 0], edge_v_m = [0, 18, 0] }]"#;
-    let scene = under_rectangle(16, blocker);
+    let scene = under_rectangle(64, blocker);
     let sampler = sampler(&scene);
-    // An edge at x = 0.3, 0.4 m high; the light from x = 0.5 to 1.5 at 0.8 m. The shadow of its near end falls
-    // on x = 0.1, that of its far end on x = -0.9: all dark between the edges' images, all light beyond.
-    let at_ground = |x_m: f64| value(&sampler, (x_m + 2.0) / 4.0, 0.001, Channel::A);
-    let open = under_rectangle(16, "");
-    let open = self::sampler(&open);
-    let unblocked = |x_m: f64| value(&open, (x_m + 2.0) / 4.0, 0.001, Channel::A);
-    let part = |x_m: f64| at_ground(x_m) / unblocked(x_m);
-    assert_eq!(part(0.32), 1.0);
-    assert!(part(-0.6) > 0.02 && part(-0.6) < 0.98);
+    // Edges at x = -0.3 and 0.3, half as high as the light: they hide its places from -0.6 - x to 0.6 - x.
+    let at_ground = |x_m: f64| value(&sampler, (x_m + 2.0) / 4.0, 0.1, Channel::A);
+    let expected = |seen: [f64; 2], x_m| 0.5 * 3.0 * rectangle_factor(seen, [x_m, 1.6]) * D65[0];
+    for (x_m, seen) in [
+        (0.4, [0.5, 1.5]),
+        (-0.6, [1.2, 1.5]),
+        (-0.8, [1.4, 1.5]),
+        (-1.6, [0.5, 1.0]),
+    ] {
+        let (ours, expected) = (at_ground(x_m), expected(seen, x_m));
+        assert!(
+            (ours / expected - 1.0).abs() < 0.02,
+            "{ours} is not {expected}"
+        );
+    }
+    assert_eq!(at_ground(-1.0), 0.0);
     assert_eq!(at_ground(-0.6), at_ground(-0.6));
 }
 
