@@ -3,8 +3,8 @@
 use std::num::NonZeroUsize;
 use std::path::Path;
 
-use protocols::{Study, TreePlan};
-use renderer::{ImageRequest, Watch};
+use protocols::{Stimuli, Study, TreePlan};
+use renderer::{ImageRequest, RendererError, Watch};
 
 use crate::command_line::{FiguresArguments, ImageArguments, RenderArguments};
 use crate::console::{self, Progress};
@@ -29,7 +29,12 @@ pub(crate) fn make_set(
     let interrupt = Interrupt::listen()?;
     let summary = progress.of_rendering(|told| {
         let watch = Watch::new(told, interrupt.flag());
-        renderer::render_set(study, out, threads, &watch)
+        Ok::<String, RendererError>(match &study.protocol.stimuli {
+            Stimuli::Rendered(_) => renderer::render_set(study, out, threads, &watch)?.to_string(),
+            Stimuli::Pictures(pictures) => {
+                renderer::make_picture_set(study, pictures, out, &watch)?.to_string()
+            }
+        })
     })?;
     console::print(summary)?;
     Ok(())

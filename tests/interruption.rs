@@ -16,7 +16,10 @@ use protocols::Study;
 
 /// The paper's scene.
 fn scene() -> String {
-    let path = Study::read(Path::new(PROTOCOL)).unwrap().scene_path();
+    let path = Study::read(Path::new(PROTOCOL))
+        .unwrap()
+        .scene_path()
+        .unwrap();
     path.into_os_string().into_string().unwrap()
 }
 

@@ -82,7 +82,7 @@ fn the_set_is_the_same_with_one_and_two_threads_and_one_image_alone_equals_the_s
         ("140K", "30K", "a140k_c030k"),
         ("10K", "10K", "a010k_c010k"),
     ] {
-        let scene = study.scene_path();
+        let scene = study.scene_path().unwrap();
         let arguments = [
             "image",
             scene.to_str().unwrap(),
@@ -109,7 +109,7 @@ fn no_pixel_of_the_ten_anchor_is_out_of_the_srgb_gamut() {
     let study = Study::read(Path::new(PROTOCOL)).unwrap();
     let manifest = Manifest::read(&folder.path().join("set")).unwrap();
     let ten = manifest
-        .stimulus(&study.protocol.stimuli.ten_anchor())
+        .stimulus(&study.protocol.stimuli.ten_anchor().unwrap())
         .unwrap();
     assert_eq!(ten.out_of_gamut_px, 0);
 }

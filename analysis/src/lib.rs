@@ -34,6 +34,7 @@ mod sections;
 mod sidecar_facts;
 mod sphericity;
 mod study_analysis;
+mod study_in_words;
 mod study_ratings;
 mod table_file;
 mod tail;

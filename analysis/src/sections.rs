@@ -2,15 +2,14 @@
 
 use std::fmt::Write as _;
 
-use protocols::{ChannelGroup, Correction, Layout, Observer, RayCount, Study};
+use protocols::{ChannelGroup, Correction, Observer, Study};
 
 use crate::EffectRow;
 use crate::apa;
 use crate::page::{Table, escaped};
-use crate::results_text::{
-    effect_name, group_name, key_result, printed_designs, remarks, sphericity,
-};
+use crate::results_text::{effect_name, key_result, printed_designs, remarks, sphericity};
 use crate::study_analysis::{ConditionMean, StudyAnalysis};
+use crate::study_in_words::design_in_words;
 use crate::study_ratings::StudyRatings;
 use crate::tail::f_tail;
 use crate::text_table::p_text;
@@ -116,73 +115,8 @@ impl Sections<'_> {
         format!(
             "<section>\n<h2>Result</h2>\n{}</section>\n<section>\n<h2>The study</h2>\n<p>{}</p>\n</section>\n",
             paragraphs.concat(),
-            self.design_in_words()
+            design_in_words(&self.study.protocol)
         )
-    }
-
-    fn design_in_words(&self) -> String {
-        let protocol = &self.study.protocol;
-        let images = protocol.stimuli.stimuli();
-        let n_shown = images
-            .iter()
-            .filter(|image| !image.sequences.is_empty())
-            .count();
-        let sequences: Vec<String> = (protocol.stimuli.sequences.iter().enumerate())
-            .map(|(index, sequence)| {
-                let range = [sequence.rays.first(), sequence.rays.last()]
-                    .map(|rays| rays.map_or_else(String::new, RayCount::to_string));
-                format!(
-                    "in {} sequence the {} channel{} had {} to {} rays and the rest {}",
-                    if index == 0 { "one" } else { "another" },
-                    group_name(sequence.varied),
-                    if sequence.varied == ChannelGroup::Chromatic {
-                        "s"
-                    } else {
-                        ""
-                    },
-                    range[0],
-                    range[1],
-                    sequence.held_rays
-                )
-            })
-            .collect();
-        let layout = match protocol.session.layout {
-            Layout::Flanking => "between the two, all three at once,",
-            Layout::Sequence => "after the one and before the other, one at a time,",
-            Layout::Single => "alone",
-            Layout::Dsis => "after that one",
-            Layout::Dscqs => "twice in turn with that one, both being rated,",
-        };
-        let scale = protocol.session.scale;
-        format!(
-            "One scene was ray traced so that its achromatic (A) and chromatic (C1, C2) channels had different numbers of \
-             spatial samples, here called rays: {}. Each of the {n_shown} images was rated from {} to {}{}. The \
-             image to be rated was shown {layout} for {} s.",
-            sequences.join("; "),
-            scale.lowest,
-            scale.highest,
-            self.comparison(),
-            protocol.session.exposure_s
-        )
-    }
-
-    /// What the images were rated against.
-    fn comparison(&self) -> String {
-        let protocol = &self.study.protocol;
-        let (scale, anchors) = (protocol.session.scale, &protocol.stimuli.anchors);
-        match protocol.session.layout {
-            Layout::Flanking | Layout::Sequence => format!(
-                " against an image with {} rays in all channels, which stands for {}, and one with {}, which stands for {}",
-                anchors.zero_rays, scale.lowest, anchors.ten_rays, scale.highest
-            ),
-            Layout::Single => String::new(),
-            Layout::Dsis | Layout::Dscqs => {
-                format!(
-                    " against an image with {} rays in all channels",
-                    anchors.ten_rays
-                )
-            }
-        }
     }
 
     fn figure(&self) -> String {

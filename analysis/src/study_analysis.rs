@@ -172,7 +172,7 @@ struct Group {
 
 /// All subjects in one group, or one group for each channel group where that is between subjects.
 fn subject_groups(study: &Study, by_subject: &BTreeMap<String, SubjectRatings>) -> Vec<Group> {
-    let shown: Vec<Stimulus> = (study.protocol.stimuli.stimuli().into_iter())
+    let shown: Vec<Stimulus> = (rendered_stimuli(study).into_iter())
         .filter(|stimulus| !stimulus.sequences.is_empty())
         .collect();
     if study.protocol.analysis.between.is_empty() {
@@ -197,6 +197,12 @@ fn subject_groups(study: &Study, by_subject: &BTreeMap<String, SubjectRatings>) 
         Group { images, members }
     };
     ChannelGroup::ALL.map(group).into()
+}
+
+/// The images of a study that renders its own.
+fn rendered_stimuli(study: &Study) -> Vec<Stimulus> {
+    let plan = study.protocol.stimuli.rendered();
+    plan.map(StimulusPlan::stimuli).unwrap_or_default()
 }
 
 fn leave_out_incomplete(groups: &mut [Group]) -> Vec<Incomplete> {

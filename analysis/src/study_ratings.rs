@@ -10,8 +10,7 @@ use std::path::{Path, PathBuf};
 
 use protocols::rating::{Phase, RatingRow, read_ratings};
 use protocols::{
-    DataSet, InputError, Observer, ReadError, Sha256Digest, StimulusId, StimulusPlan, Study,
-    SubjectId,
+    DataSet, InputError, Observer, ReadError, Sha256Digest, StimulusId, Study, SubjectId,
 };
 
 use crate::AnalysisError;
@@ -124,7 +123,7 @@ impl StudyRatings {
         path: &Path,
         pilots: Pilots,
     ) -> Result<Vec<RatingRow>, AnalysisError> {
-        let file = read_ratings(path, &StimulusPlan::factors())?;
+        let file = read_ratings(path, &study.protocol.stimuli.factors())?;
         if file.is_torn {
             self.warnings.push(format!(
                 "{}: the last line is torn (the program was stopped while it wrote); it was never confirmed and is left out",
@@ -306,9 +305,9 @@ fn check_row(study: &Study, path: &Path, index: usize, row: &RatingRow) -> Resul
     let n_rated = study
         .protocol
         .stimuli
-        .stimuli()
+        .images()
         .iter()
-        .filter(|s| !s.sequences.is_empty())
+        .filter(|image| image.is_rated)
         .count();
     let n_trials = session.trial_count(n_rated);
     let out_of_range = |column: &str, found: u32, most: usize| {
@@ -354,24 +353,25 @@ fn check_name(study: &Study, path: &Path, index: usize, row: &RatingRow) -> Resu
 }
 
 /// The level of each factor of each stimulus, by the protocol.
-struct StimulusLevels(BTreeMap<StimulusId, Vec<String>>);
+struct StimulusLevels {
+    factors: Vec<String>,
+    levels: BTreeMap<StimulusId, Vec<String>>,
+}
 
 impl StimulusLevels {
     fn new(study: &Study) -> Self {
-        let levels = |stimulus: &protocols::Stimulus| stimulus.factors().into_values().collect();
-        let stimuli = study.protocol.stimuli.stimuli();
-        Self(
-            stimuli
-                .into_iter()
-                .map(|s| (s.id.clone(), levels(&s)))
-                .collect(),
-        )
+        let stimuli = &study.protocol.stimuli;
+        let images = stimuli.images().into_iter();
+        Self {
+            factors: stimuli.factors(),
+            levels: images.map(|image| (image.id, image.levels)).collect(),
+        }
     }
 
     /// Checks that a row's levels are those of its stimulus.
     fn check(&self, path: &Path, index: usize, row: &RatingRow) -> Result<(), InputError> {
         let place = |column: &str| format!("line {}, column {column}", line(index));
-        match self.0.get(&row.stimulus_id) {
+        match self.levels.get(&row.stimulus_id) {
             None => Err(InputError::new(
                 path,
                 format!("the stimulus {}", row.stimulus_id),
@@ -384,7 +384,7 @@ impl StimulusLevels {
                 row.levels.join(", "),
                 format!("{}, the levels of {}", levels.join(", "), row.stimulus_id),
             )
-            .at(place(&StimulusPlan::factors().join(" and ")))),
+            .at(place(&self.factors.join(" and ")))),
             Some(_) => Ok(()),
         }
     }

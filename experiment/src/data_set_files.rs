@@ -8,9 +8,7 @@ use std::os::unix::fs::DirBuilderExt as _;
 use std::path::Path;
 
 use protocols::rating::columns;
-use protocols::{
-    Access, DataSet, InputError, Observer, ReadError, StimulusPlan, Study, write_atomically,
-};
+use protocols::{Access, DataSet, InputError, Observer, ReadError, Study, write_atomically};
 use serde_json::{Value, json};
 
 use crate::ExperimentError;
@@ -87,7 +85,7 @@ fn description(study: &Study, observer: Observer) -> Value {
             "simulated observers (a model of vision with bias, gain and noise; no person took part)",
         ),
     };
-    let variables: Vec<Value> = columns(&StimulusPlan::factors())
+    let variables: Vec<Value> = columns(&study.protocol.stimuli.factors())
         .into_iter()
         .map(|column| {
             let mut variable = json!({

@@ -1,15 +1,13 @@
 //! The order of the trials: a subject's own, and the same whenever it is asked for.
 //!
-//! First the practice images as the protocol lists them, then, block by block, every image that belongs to
-//! a sequence. The zero anchor belongs to none; it is rated outside practice only where the protocol repeats
-//! the anchors.
+//! First the practice images as the protocol lists them, then, block by block, every image that is rated. An
+//! image that is only an anchor is rated outside practice only where the protocol repeats the anchors.
 
 use std::collections::BTreeMap;
 
 use protocols::rating::Phase;
 use protocols::{
-    InputError, Layout, LevelBlocks, OrderScheme, RunLimit, StimulusId, StimulusPlan, Study,
-    SubjectId,
+    InputError, Layout, LevelBlocks, OrderScheme, RunLimit, StimulusId, Study, SubjectId,
 };
 
 use crate::arrangement::{Arrangement, Limits, RunOfLevels};
@@ -31,7 +29,7 @@ pub struct Trial {
     pub repetition: u32,
     /// Which member of a pair comes first; by lot where the protocol has pairs.
     pub first: First,
-    /// The level of each factor, in the order of [`StimulusPlan::factors`].
+    /// The level of each factor, in the order of `Stimuli::factors`.
     pub levels: Vec<String>,
 }
 
@@ -100,17 +98,11 @@ struct Order<'a> {
 
 impl<'a> Order<'a> {
     fn new(study: &'a Study, subject: &SubjectId, session: u32) -> Result<Self, InputError> {
-        let plan = &study.protocol.stimuli;
-        let factors = StimulusPlan::factors();
-        let stimuli = plan.stimuli();
-        let with_levels = stimuli.iter().map(|stimulus| {
-            let of_image = stimulus.factors();
-            let level = |factor: &String| of_image.get(factor).cloned().unwrap_or_default();
-            (stimulus.id.clone(), factors.iter().map(level).collect())
-        });
-        let is_rated = |&index: &usize| !stimuli[index].sequences.is_empty();
-        let (zero, ten) = (plan.zero_anchor(), plan.ten_anchor());
-        let is_anchor = |&index: &usize| [&zero, &ten].contains(&&stimuli[index].id);
+        let stimuli = &study.protocol.stimuli;
+        let images = stimuli.images();
+        let anchors = [stimuli.zero_anchor(), stimuli.ten_anchor()];
+        let is_rated = |&index: &usize| images[index].is_rated;
+        let is_anchor = |&index: &usize| anchors.iter().flatten().any(|id| *id == images[index].id);
         let order = &study.protocol.session.order;
         let row = match (order.is_counterbalanced(), subject.number()) {
             (false, _) => 0,
@@ -125,9 +117,12 @@ impl<'a> Order<'a> {
         };
         Ok(Self {
             study,
-            images: with_levels.collect(),
-            rated: (0..stimuli.len()).filter(is_rated).collect(),
-            anchors: (0..stimuli.len()).filter(is_anchor).collect(),
+            rated: (0..images.len()).filter(is_rated).collect(),
+            anchors: (0..images.len()).filter(is_anchor).collect(),
+            images: images
+                .into_iter()
+                .map(|image| (image.id, image.levels))
+                .collect(),
             row,
         })
     }
@@ -243,7 +238,7 @@ impl<'a> Order<'a> {
     }
 
     fn factor(&self, name: &str, place: &str) -> Result<usize, InputError> {
-        let factors = StimulusPlan::factors();
+        let factors = self.study.protocol.stimuli.factors();
         let place_of = factors.iter().position(|factor| factor == name);
         place_of.ok_or_else(|| {
             let expected = format!("a factor of the stimuli: {}", factors.join(", "));

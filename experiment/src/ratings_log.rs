@@ -10,7 +10,7 @@ use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::{Path, PathBuf};
 
 use protocols::rating::{RatingRow, header_line, read_ratings};
-use protocols::{DataSet, InputError, StimulusPlan};
+use protocols::{DataSet, InputError};
 
 use crate::sidecar::SessionKey;
 use crate::{ExperimentError, Trial};
@@ -29,6 +29,7 @@ impl RatingsLog {
         data_set: &DataSet,
         key: &SessionKey,
         trials: &[Trial],
+        factors: &[String],
     ) -> Result<Self, ExperimentError> {
         let path = data_set.ratings_path(&key.subject_id, key.session_id, key.task());
         let mut file = OpenOptions::new()
@@ -52,10 +53,9 @@ impl RatingsLog {
                 return Err(ExperimentError::io("lock", &path)(error));
             }
         }
-        let factors = StimulusPlan::factors();
-        let found = read_ratings(&path, &factors)?;
+        let found = read_ratings(&path, factors)?;
         check_order(&path, &found.rows, key, trials)?;
-        let header = (found.whole_bytes == 0).then(|| header_line(&factors));
+        let header = (found.whole_bytes == 0).then(|| header_line(factors));
         mend(&mut file, found.whole_bytes, header.as_deref())
             .and_then(|()| File::open(data_set.data_folder())?.sync_all())
             .map_err(ExperimentError::io("write", &path))?;

@@ -13,8 +13,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use jiff::Timestamp;
 use protocols::rating::header_line;
 use protocols::{
-    Access, DataSet, InputError, Observer, StimulusId, StimulusPlan, Study, SubjectId,
-    write_atomically,
+    Access, DataSet, InputError, Observer, StimulusId, Study, SubjectId, write_atomically,
 };
 use rayon::prelude::*;
 
@@ -140,7 +139,7 @@ impl Simulation<'_> {
         let traits = observer.traits();
         let session = observer.sit(&trials, self.qualities)?;
 
-        let mut text = header_line(&StimulusPlan::factors());
+        let mut text = header_line(&self.study.protocol.stimuli.factors());
         for answer in &session.answers {
             let requested_s = self.study.protocol.session.exposure_s;
             let row = rating_row(

@@ -7,7 +7,9 @@
 
 use std::collections::BTreeMap;
 
-use protocols::{InputError, ModelObserver, NormalParameter, Protocol, StimulusId, SubjectId};
+use protocols::{
+    InputError, ModelObserver, NormalParameter, Protocol, Stimuli, StimulusId, SubjectId,
+};
 
 use crate::random::Random;
 use crate::sidecar::ModelTraits;
@@ -25,7 +27,7 @@ pub(crate) struct SimulatedObserver {
     subject: SubjectId,
     model: ModelObserver,
     rules: Rules,
-    reference: StimulusId,
+    stimuli: Stimuli,
     traits: ModelTraits,
     random: Random,
 }
@@ -48,7 +50,7 @@ impl SimulatedObserver {
             subject: subject.clone(),
             model,
             rules: Rules::of(&protocol.session),
-            reference: protocol.stimuli.ten_anchor(),
+            stimuli: protocol.stimuli.clone(),
             traits: ModelTraits { seed, bias, gain },
             random,
         }
@@ -117,7 +119,9 @@ impl SimulatedObserver {
         let rating = self.rating(&trial.stimulus_id, qualities)?;
         let mut marks = vec![rating];
         if self.rules.marks() == 2 {
-            let reference = self.rating(&self.reference.clone(), qualities)?;
+            let reference = self.stimuli.reference_of(&trial.stimulus_id);
+            let reference = reference.unwrap_or_else(|| trial.stimulus_id.clone());
+            let reference = self.rating(&reference, qualities)?;
             let first = usize::from(trial.first == First::Test);
             marks.insert(first, reference);
         }

@@ -102,7 +102,8 @@ impl Sitting {
         let data_set = DataSet::new(&options.data_dir, &study.protocol.study);
         data_set_files::prepare(&data_set, study, Observer::Person)?;
         let trials = trials(study, &key.subject_id, key.session_id)?;
-        let log = RatingsLog::open(&data_set, &key, &trials)?;
+        let factors = study.protocol.stimuli.factors();
+        let log = RatingsLog::open(&data_set, &key, &trials, &factors)?;
         if log.rated() == trials.len() {
             let found = format!("all {} trials rated", trials.len());
             return Err(

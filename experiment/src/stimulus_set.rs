@@ -4,12 +4,12 @@
 //! made.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use image::{ColorType, ImageFormat};
 use protocols::{
-    InputError, Manifest, ManifestFile, ManifestStimulus, ReadError, Sha256Digest, StimulusId,
-    Study,
+    InputError, Manifest, ManifestFile, ManifestPicture, ManifestStimulus, PictureManifest,
+    ReadError, Sha256Digest, Stimuli, StimulusId, Study,
 };
 
 use crate::ExperimentError;
@@ -23,9 +23,10 @@ pub struct ScreenImage {
     pub rgb: Vec<u8>,
 }
 
-/// All images of a study, verified and decoded.
+/// All images of a study, verified and decoded, all of one size.
 #[derive(Clone, Debug)]
 pub struct StimulusSet {
+    size_px: [u32; 2],
     images: BTreeMap<StimulusId, ScreenImage>,
     manifest_sha256: Sha256Digest,
 }
@@ -38,24 +39,24 @@ impl StimulusSet {
     /// The manifest or an image is missing, malformed, of another study, of another size, or not the file
     /// that was made.
     pub fn read(study: &Study, stimuli_dir: &Path) -> Result<Self, ExperimentError> {
-        let manifest = Manifest::read(stimuli_dir)?;
-        manifest.check_made_for(study, stimuli_dir)?;
+        let shown = ShownFiles::of(study, stimuli_dir)?;
         let path = stimuli_dir.join(Manifest::FILE_NAME);
         let manifest_sha256 =
             Sha256Digest::of_file(&path).map_err(ExperimentError::io("read", &path))?;
-        let size_px = study.protocol.stimuli.size_px;
         let mut images = BTreeMap::new();
-        for stimulus in study.protocol.stimuli.stimuli() {
-            let Some(entry) = manifest.stimulus(&stimulus.id) else {
-                continue; // `check_made_for` has refused such a manifest.
-            };
-            let image = read_image(&entry.png, stimuli_dir, size_px)?;
-            images.insert(stimulus.id, image);
+        for (id, file) in shown.files {
+            images.insert(id, read_image(&file, stimuli_dir, shown.size_px)?);
         }
         Ok(Self {
+            size_px: shown.size_px,
             images,
             manifest_sha256,
         })
+    }
+
+    /// Width and height of every image.
+    pub const fn size_px(&self) -> [u32; 2] {
+        self.size_px
     }
 
     /// The image with this name.
@@ -84,6 +85,48 @@ impl StimulusSet {
     }
 }
 
+/// Which files a manifest names, by what they are for.
+struct ShownFiles {
+    size_px: [u32; 2],
+    /// What sessions show.
+    files: Vec<(StimulusId, ManifestFile)>,
+    /// What else belongs to the set, and the folder that it is in.
+    others: Vec<(PathBuf, ManifestFile)>,
+}
+
+impl ShownFiles {
+    fn of(study: &Study, stimuli_dir: &Path) -> Result<Self, ReadError> {
+        match &study.protocol.stimuli {
+            Stimuli::Rendered(plan) => {
+                let manifest = Manifest::read(stimuli_dir)?;
+                manifest.check_made_for(study, stimuli_dir)?;
+                let entries = manifest.stimuli.iter();
+                let exr = |entry: &ManifestStimulus| (stimuli_dir.to_owned(), entry.exr.clone());
+                Ok(Self {
+                    size_px: plan.size_px,
+                    others: entries.clone().map(exr).collect(),
+                    files: entries
+                        .map(|entry| (entry.id.clone(), entry.png.clone()))
+                        .collect(),
+                })
+            }
+            Stimuli::Pictures(pictures) => {
+                let manifest = PictureManifest::read(study, pictures, stimuli_dir)?;
+                let entries = manifest.pictures.iter();
+                let source =
+                    |entry: &ManifestPicture| (pictures.folder.clone(), entry.source.clone());
+                Ok(Self {
+                    size_px: manifest.size_px,
+                    others: entries.clone().map(source).collect(),
+                    files: entries
+                        .map(|entry| (entry.id.clone(), entry.png.clone()))
+                        .collect(),
+                })
+            }
+        }
+    }
+}
+
 fn read_image(
     file: &ManifestFile,
     stimuli_dir: &Path,
@@ -102,10 +145,7 @@ fn read_image(
     let found_px = [image.width(), image.height()];
     if found_px != size_px {
         let found = format!("{} x {} pixels", found_px[0], found_px[1]);
-        let expected = format!(
-            "{} x {} as in the protocol's stimuli.size_px",
-            size_px[0], size_px[1]
-        );
+        let expected = format!("{} x {} as the set has", size_px[0], size_px[1]);
         return Err(InputError::new(path, found, expected).into());
     }
     Ok(ScreenImage {
@@ -116,18 +156,20 @@ fn read_image(
 
 /// Every file of the set that is not as the manifest says: one line each.
 pub(crate) fn faults(study: &Study, stimuli_dir: &Path) -> Vec<String> {
-    let manifest = match Manifest::read(stimuli_dir) {
-        Ok(manifest) => manifest,
-        Err(error) => return vec![error.to_string()],
-    };
-    if let Err(error) = manifest.check_made_for(study, stimuli_dir) {
-        return vec![error.to_string()];
+    let mut faults = Vec::new();
+    if let Some(pictures) = study.protocol.stimuli.pictures() {
+        faults.extend(pictures.check_files().err().map(|error| error.to_string()));
     }
-    let files = |entry: &ManifestStimulus| {
-        let exr = entry.exr.read_verified(stimuli_dir).map(|_bytes| ());
-        let png = read_image(&entry.png, stimuli_dir, study.protocol.stimuli.size_px);
-        [exr.err(), png.map(|_image| ()).err()]
+    let shown = match ShownFiles::of(study, stimuli_dir) {
+        Ok(shown) => shown,
+        Err(error) => return [faults, vec![error.to_string()]].concat(),
     };
-    let errors = manifest.stimuli.iter().flat_map(files).flatten();
-    errors.map(|error| error.to_string()).collect()
+    let others = shown.others.iter();
+    let others = others.map(|(folder, file)| file.read_verified(folder).map(|_bytes| ()));
+    let size_px = shown.size_px;
+    let images = shown.files.iter();
+    let images = images.map(|(_, file)| read_image(file, stimuli_dir, size_px).map(|_image| ()));
+    let errors = others.chain(images).filter_map(Result::err);
+    faults.extend(errors.map(|error| error.to_string()));
+    faults
 }

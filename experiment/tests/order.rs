@@ -76,7 +76,7 @@ fn practice_comes_first_and_every_block_has_each_image_once() {
     for (repetition, block) in (1..).zip(test.chunks(27)) {
         let images: BTreeSet<_> = block.iter().map(|trial| &trial.stimulus_id).collect();
         assert_eq!(images.len(), 27);
-        assert!(!images.contains(&protocol.stimuli.zero_anchor()));
+        assert!(!images.contains(&protocol.stimuli.zero_anchor().unwrap()));
         assert!(block.iter().all(|trial| trial.repetition == repetition));
     }
     let orders: BTreeSet<Vec<_>> = test

@@ -87,7 +87,7 @@ fn every_observer_rates_every_image_of_the_sequences_once() {
             .study
             .protocol
             .stimuli
-            .stimuli()
+            .images()
             .iter()
             .map(|stimulus| stimulus.id.to_string())
             .filter(|id| id != "a010k_c010k")
@@ -149,8 +149,8 @@ fn without_bias_and_noise_an_observer_answers_what_the_model_of_vision_says() {
         model.gain.sd,
     ) = (0.0, 0.0, 1.0, 0.0);
     let summary = place.simulate("data", 1, 1).unwrap();
-    let zero = &summary.qualities[&place.study.protocol.stimuli.zero_anchor()];
-    let ten = &summary.qualities[&place.study.protocol.stimuli.ten_anchor()];
+    let zero = &summary.qualities[&place.study.protocol.stimuli.zero_anchor().unwrap()];
+    let ten = &summary.qualities[&place.study.protocol.stimuli.ten_anchor().unwrap()];
     assert_eq!((zero.on_scale, ten.on_scale), (0.0, 10.0));
     // An image against itself has no difference: 10 JOD by definition of the unit.
     assert!((ten.jod - 10.0).abs() < 1e-6);

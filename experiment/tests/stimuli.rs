@@ -73,7 +73,7 @@ fn a_manifest_that_points_out_of_its_folder_is_refused() {
 
 #[test]
 fn a_set_of_another_plan_is_refused() {
-    let text = refusal(|_, study| study.protocol.stimuli.seed += 1);
+    let text = refusal(|_, study| study.protocol.stimuli.rendered_mut().unwrap().seed += 1);
     assert!(text.contains("another plan"), "{text}");
 }
 
@@ -117,7 +117,7 @@ fn an_image_of_another_size_is_refused() {
     let text = refusal(|stimuli, _| {
         let folder = tempfile::tempdir().unwrap();
         let mut other = small_study(folder.path());
-        other.protocol.stimuli.size_px = [40, 48];
+        other.protocol.stimuli.rendered_mut().unwrap().size_px = [40, 48];
         let made = write_stimuli(&other, folder.path());
         replace_image(stimuli, &fs::read(made.join("a050k_c140k.png")).unwrap());
     });

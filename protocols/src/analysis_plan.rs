@@ -35,14 +35,12 @@ impl AnalysisPlan {
         self.between.iter().chain(&self.within).map(String::as_str)
     }
 
-    pub(crate) fn fault(&self) -> Option<(&'static str, String, &'static str)> {
-        let known = ["channel", "rays"];
-        if let Some(unknown) = self.factors().find(|factor| !known.contains(factor)) {
-            return Some((
-                "analysis",
-                format!("the factor {unknown:?}"),
-                "factors of the stimulus set: channel, rays",
-            ));
+    /// What is wrong with the plan, given the factors of the stimulus set.
+    pub(crate) fn fault(&self, known: &[String]) -> Option<(&'static str, String, &'static str)> {
+        let is_known = |factor: &str| known.iter().any(|known| known == factor);
+        if let Some(unknown) = self.factors().find(|factor| !is_known(factor)) {
+            let found = format!("the factor {unknown:?} ({} are known)", known.join(", "));
+            return Some(("analysis", found, "factors of the stimulus set"));
         }
         let mut factors: Vec<&str> = self.factors().collect();
         factors.sort_unstable();
@@ -56,14 +54,10 @@ impl AnalysisPlan {
         if let Some(exclusion) = self
             .exclude
             .iter()
-            .find(|exclusion| !known.contains(&exclusion.factor.as_str()))
+            .find(|exclusion| !is_known(&exclusion.factor))
         {
             let found = format!("the factor {:?}", exclusion.factor);
-            return Some((
-                "analysis.exclude",
-                found,
-                "a factor of the stimulus set: channel, rays",
-            ));
+            return Some(("analysis.exclude", found, "a factor of the stimulus set"));
         }
         if !(self.confidence > 0.5 && self.confidence < 1.0) {
             return Some((

@@ -118,10 +118,7 @@ impl Manifest {
     fn check(&self, path: &Path) -> Result<(), InputError> {
         for stimulus in &self.stimuli {
             for file in [&stimulus.exr, &stimulus.png] {
-                let is_plain = !file.name.contains(['/', '\\'])
-                    && !file.name.starts_with('.')
-                    && !file.name.is_empty();
-                if !is_plain {
+                if !file.has_plain_name() {
                     return Err(InputError::new(
                         path,
                         format!("{:?}", file.name),
@@ -151,7 +148,8 @@ impl Manifest {
     pub fn check_made_for(&self, study: &Study, stimuli_dir: &Path) -> Result<(), InputError> {
         let path = stimuli_dir.join(Self::FILE_NAME);
         let remedy = format!("run `acuity render {}`", study.path.display());
-        if self.plan != study.protocol.stimuli {
+        let plan = study.render_plan()?;
+        if self.plan != *plan {
             let expected = format!("the plan in [stimuli] of \"{}\"", study.path.display());
             return Err(
                 InputError::new(path, "a set made from another plan", expected).remedy(remedy),
@@ -167,7 +165,7 @@ impl Manifest {
             let found = "a set made with other limits of acuity";
             return Err(InputError::new(path, found, expected).remedy(remedy));
         }
-        for stimulus in study.protocol.stimuli.stimuli() {
+        for stimulus in plan.stimuli() {
             if self.stimulus(&stimulus.id).is_none() {
                 return Err(InputError::new(
                     path,
@@ -187,6 +185,11 @@ impl Manifest {
 }
 
 impl ManifestFile {
+    /// Whether the file is in the folder of the manifest, whatever is written there.
+    pub(crate) fn has_plain_name(&self) -> bool {
+        !self.name.contains(['/', '\\']) && !self.name.starts_with('.') && !self.name.is_empty()
+    }
+
     /// The bytes of the file, if they are those that the manifest names.
     ///
     /// # Errors

@@ -3,7 +3,20 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::{InputError, Observer, Protocol, ReadError, Sha256Digest};
+use crate::{
+    Acuity, InputError, Observer, Protocol, ReadError, Sha256Digest, StimulusPlan, Viewing,
+};
+
+/// What a set of images that are rendered follows from.
+#[derive(Clone, Copy, Debug)]
+pub struct Rendering<'a> {
+    /// Scene, size and ray counts.
+    pub plan: &'a StimulusPlan,
+    /// Where the subject sits.
+    pub viewing: Viewing,
+    /// What the eye resolves from there, if no channel is refined beyond it.
+    pub acuity: Option<Acuity>,
+}
 
 /// A protocol as it was read from a file.
 #[derive(Clone, Debug)]
@@ -41,15 +54,44 @@ impl Study {
         })
     }
 
+    /// What the images follow from, if they are rendered from a scene.
+    ///
+    /// # Errors
+    ///
+    /// The study shows own pictures.
+    pub fn rendering(&self) -> Result<Rendering<'_>, InputError> {
+        Ok(Rendering {
+            plan: self.render_plan()?,
+            viewing: self.protocol.viewing,
+            acuity: self.protocol.acuity,
+        })
+    }
+
+    /// The plan of a set that is rendered from a scene.
+    ///
+    /// # Errors
+    ///
+    /// The study shows own pictures.
+    pub fn render_plan(&self) -> Result<&StimulusPlan, InputError> {
+        self.protocol.stimuli.rendered().ok_or_else(|| {
+            let found = "own pictures (`images`)";
+            InputError::new(&self.path, found, "a `scene` to render").at("table [stimuli]")
+        })
+    }
+
     /// The scene file of the stimulus set.
-    pub fn scene_path(&self) -> PathBuf {
+    ///
+    /// # Errors
+    ///
+    /// The study shows own pictures.
+    pub fn scene_path(&self) -> Result<PathBuf, InputError> {
         let folder = self.path.parent().unwrap_or_else(|| Path::new(""));
-        folder.join(&self.protocol.stimuli.scene)
+        Ok(folder.join(&self.render_plan()?.scene))
     }
 
     /// Where the stimulus set stands unless the user says otherwise: `stimuli/<set>`.
     pub fn default_stimuli_dir(&self) -> PathBuf {
-        Path::new("stimuli").join(&self.protocol.stimuli.set)
+        Path::new("stimuli").join(self.protocol.stimuli.set())
     }
 
     /// Where ratings stand unless the user says otherwise: `data/<study>`, for simulated observers

@@ -16,7 +16,7 @@ fn paper() -> Study {
 
 #[test]
 fn the_paper_has_28_images_of_which_one_ends_both_sequences() {
-    let stimuli = paper().protocol.stimuli.stimuli();
+    let stimuli = paper().render_plan().unwrap().stimuli();
     assert_eq!(stimuli.len(), 28);
     let shared: Vec<_> = stimuli
         .iter()

@@ -29,10 +29,10 @@ pub fn render_set(
     threads: Option<NonZeroUsize>,
     watch: &Watch<'_>,
 ) -> Result<SetSummary, RendererError> {
-    let (scene, scene_sha256) = Scene::read_with_digest(&study.scene_path())?;
-    let plan = &study.protocol.stimuli;
+    let (scene, scene_sha256) = Scene::read_with_digest(&study.scene_path()?)?;
+    let plan = study.render_plan()?;
     let most = plan.most_rays();
-    ImageRequest::from_protocol(&study.protocol, most, most).check(&study.path)?;
+    ImageRequest::of_study(study.rendering()?, most, most).check(&study.path)?;
     on_threads(threads, out, || {
         let sampler = scene.sampler(plan.quadrature, plan.size_px);
         render_set_of(&sampler, &scene_sha256, study, out, watch)

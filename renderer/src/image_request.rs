@@ -4,8 +4,8 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 
 use protocols::{
-    Channel, ChannelGroup, InputError, PerChannel, Protocol, Quadrature, RayCount,
-    RefinementDriver, TreePlan,
+    Channel, ChannelGroup, InputError, PerChannel, Quadrature, RayCount, RefinementDriver,
+    Rendering, TreePlan,
 };
 
 use crate::account::RayAccount;
@@ -37,11 +37,13 @@ pub struct ImageRequest {
 
 impl ImageRequest {
     /// The request for an image of a study, whose `[acuity]` says how deep each channel goes.
-    pub fn from_protocol(protocol: &Protocol, rays_a: RayCount, rays_c1c2: RayCount) -> Self {
-        let plan = &protocol.stimuli;
-        let limits = protocol
-            .acuity
-            .map(|acuity| AcuityLimits::new(acuity, protocol.viewing, plan.size_px));
+    pub fn of_study(study: Rendering<'_>, rays_a: RayCount, rays_c1c2: RayCount) -> Self {
+        let Rendering {
+            plan,
+            viewing,
+            acuity,
+        } = study;
+        let limits = acuity.map(|acuity| AcuityLimits::new(acuity, viewing, plan.size_px));
         Self {
             rays_a,
             rays_c1c2,

@@ -24,8 +24,10 @@ mod lighting;
 mod matrix3;
 mod opponent;
 mod opponent_exr;
+mod picture_set;
 #[cfg(test)]
 mod plain_tracer;
+mod png_notes;
 mod priority;
 mod ray_tree;
 mod reconstruct;
@@ -63,6 +65,7 @@ pub use opponent::{
     ac1c2_from_xyz, linear_srgb_from_ac1c2, xyz_from_ac1c2,
 };
 pub use opponent_exr::read_opponent_exr;
+pub use picture_set::{PictureSetSummary, make_picture_set};
 pub use ray_tree::RayTree;
 pub use reconstruct::reconstruct;
 pub use refine::{TracePlan, trace};

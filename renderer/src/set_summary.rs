@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use protocols::{ManifestStimulus, PerChannel, Protocol, RayCount, StimulusId};
+use protocols::{ManifestStimulus, PerChannel, RayCount, Rendering, StimulusId};
 
 use crate::account::RayAccount;
 use crate::acuity_limits::AcuityLimits;
@@ -43,8 +43,12 @@ pub struct StimulusSummary {
 }
 
 impl StimulusSummary {
-    pub(crate) fn new(stimulus: &ManifestStimulus, protocol: &Protocol, tree: &ScreenTree) -> Self {
-        let request = ImageRequest::from_protocol(protocol, stimulus.rays_a, stimulus.rays_c1c2);
+    pub(crate) fn new(
+        stimulus: &ManifestStimulus,
+        rendering: Rendering<'_>,
+        tree: &ScreenTree,
+    ) -> Self {
+        let request = ImageRequest::of_study(rendering, stimulus.rays_a, stimulus.rays_c1c2);
         Self {
             id: stimulus.id.clone(),
             rays_a: stimulus.rays_a,

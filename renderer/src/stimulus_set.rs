@@ -11,10 +11,11 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use protocols::{
-    Access, Channel, Manifest, ManifestFile, ManifestStimulus, PerChannel, Protocol, RayCount,
+    Access, Channel, Manifest, ManifestFile, ManifestStimulus, PerChannel, RayCount, Rendering,
     Sha256Digest, Stimulus, Study, write_atomically,
 };
 use rayon::prelude::*;
+use serde::Serialize;
 
 use crate::acuity_limits::AcuityLimits;
 use crate::channel_image::ChannelImage;
@@ -54,9 +55,10 @@ pub fn render_set_of(
     out: &Path,
     watch: &Watch<'_>,
 ) -> Result<SetSummary, RendererError> {
-    let plan = &study.protocol.stimuli;
+    let rendering = study.rendering()?;
+    let plan = rendering.plan;
     let stimuli = plan.stimuli();
-    let trace_plan = trace_plan(&study.protocol);
+    let trace_plan = trace_plan(rendering);
     let checkpoint = Checkpoint::beside(
         &out.join("trace"),
         &trace_plan,
@@ -65,15 +67,14 @@ pub fn render_set_of(
     );
     let tree = checkpoint.trace(sampler, &trace_plan, watch)?;
     remove_manifest(out)?;
-    let images = channel_images(&tree, &study.protocol);
+    let images = channel_images(&tree, rendering);
     let encoder = SrgbEncoder::new();
     let images_done = AtomicU64::new(0);
     let write = |stimulus: &Stimulus| {
         if watch.is_cancelled() {
             return Err(checkpoint.interruption(&tree, &trace_plan));
         }
-        let request =
-            ImageRequest::from_protocol(&study.protocol, stimulus.rays_a, stimulus.rays_c1c2);
+        let request = ImageRequest::of_study(rendering, stimulus.rays_a, stimulus.rays_c1c2);
         let channels = recombine(&images, &request, out)?;
         let record = request.record(scene_sha256.clone(), request.rectangles_in(&tree));
         let written = write_stimulus(stimulus, channels, &record, &encoder, out)?;
@@ -84,7 +85,7 @@ pub fn render_set_of(
     let written: Result<Vec<ManifestStimulus>, RendererError> =
         stimuli.par_iter().map(write).collect();
     checkpoint.keep_if_cancelled(&tree, &trace_plan, watch)?;
-    let manifest = manifest(study, scene_sha256.clone(), written?);
+    let manifest = manifest(study, plan, (scene_sha256.clone(), written?));
     write_manifest(&manifest, out)?;
     checkpoint.remove()?;
     Ok(SetSummary {
@@ -93,7 +94,7 @@ pub fn render_set_of(
         stimuli: manifest
             .stimuli
             .iter()
-            .map(|stimulus| StimulusSummary::new(stimulus, &study.protocol, &tree))
+            .map(|stimulus| StimulusSummary::new(stimulus, rendering, &tree))
             .collect(),
         acuity: study
             .protocol
@@ -104,22 +105,22 @@ pub fn render_set_of(
 }
 
 /// Every channel as far as any image needs it.
-fn trace_plan(protocol: &Protocol) -> TracePlan {
-    let plan = &protocol.stimuli;
+fn trace_plan(rendering: Rendering<'_>) -> TracePlan {
+    let plan = rendering.plan;
     let most = |rays: fn(&Stimulus) -> RayCount| {
         let counts = plan.stimuli().iter().map(rays).max();
         counts.unwrap_or_else(|| plan.most_rays())
     };
     let rays_a = most(|stimulus| stimulus.rays_a);
     let rays_c1c2 = most(|stimulus| stimulus.rays_c1c2);
-    ImageRequest::from_protocol(protocol, rays_a, rays_c1c2).trace_plan()
+    ImageRequest::of_study(rendering, rays_a, rays_c1c2).trace_plan()
 }
 
-fn channel_images(tree: &ScreenTree, protocol: &Protocol) -> PerChannel<ImagesByRays> {
-    let plan = &protocol.stimuli;
+fn channel_images(tree: &ScreenTree, rendering: Rendering<'_>) -> PerChannel<ImagesByRays> {
+    let plan = rendering.plan;
     let mut wanted: Vec<(Channel, RayCount, u32)> = Vec::new();
     for stimulus in plan.stimuli() {
-        let request = ImageRequest::from_protocol(protocol, stimulus.rays_a, stimulus.rays_c1c2);
+        let request = ImageRequest::of_study(rendering, stimulus.rays_a, stimulus.rays_c1c2);
         wanted.extend(
             Channel::ALL
                 .map(|channel| (channel, request.rays(channel), request.reach(channel).depth)),
@@ -203,8 +204,11 @@ fn write_stimulus(
     })
 }
 
-fn manifest(study: &Study, scene_sha256: Sha256Digest, stimuli: Vec<ManifestStimulus>) -> Manifest {
-    let plan = &study.protocol.stimuli;
+fn manifest(
+    study: &Study,
+    plan: &protocols::StimulusPlan,
+    (scene_sha256, stimuli): (Sha256Digest, Vec<ManifestStimulus>),
+) -> Manifest {
     Manifest {
         set: plan.set.clone(),
         acuity_version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -212,7 +216,7 @@ fn manifest(study: &Study, scene_sha256: Sha256Digest, stimuli: Vec<ManifestStim
         scene_sha256,
         plan: plan.clone(),
         color_space: COLOR_SPACE.to_owned(),
-        remarks: remark::of_driver(study.protocol.stimuli.tree.driver)
+        remarks: remark::of_driver(plan.tree.driver)
             .map(str::to_owned)
             .into_iter()
             .collect(),
@@ -222,7 +226,7 @@ fn manifest(study: &Study, scene_sha256: Sha256Digest, stimuli: Vec<ManifestStim
     }
 }
 
-fn write_manifest(manifest: &Manifest, out: &Path) -> Result<(), RendererError> {
+pub(crate) fn write_manifest(manifest: &impl Serialize, out: &Path) -> Result<(), RendererError> {
     let path = out.join(Manifest::FILE_NAME);
     let mut text =
         serde_json::to_string_pretty(manifest).map_err(|error| RendererError::Encoding {
@@ -235,7 +239,7 @@ fn write_manifest(manifest: &Manifest, out: &Path) -> Result<(), RendererError> 
 }
 
 /// An older set is no set while its files are replaced.
-fn remove_manifest(out: &Path) -> Result<(), RendererError> {
+pub(crate) fn remove_manifest(out: &Path) -> Result<(), RendererError> {
     let path = out.join(Manifest::FILE_NAME);
     match fs::remove_file(&path) {
         Err(error) if error.kind() != ErrorKind::NotFound => {

@@ -22,7 +22,7 @@ pub(crate) fn session(study: &Study, subject: &str, seed: u64) -> Vec<RatingRow>
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut uniform = || f64::from(random.next_u32()) / f64::from(u32::MAX);
     let bias = 2.0 * uniform() - 1.0;
-    let plan = &study.protocol.stimuli;
+    let plan = study.render_plan().unwrap();
     let shown = plan
         .stimuli()
         .into_iter()

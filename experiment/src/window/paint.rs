@@ -11,7 +11,7 @@ use eframe::egui::{
     Align, Color32, ColorImage, Context, CornerRadius, FontId, Galley, Painter, Pos2, Rect, Stroke,
     StrokeKind, TextureHandle, TextureOptions, Vec2, pos2, vec2,
 };
-use protocols::{Layout, RatingTime, ResponseStyle, SessionPlan, StimulusId, StimulusPlan};
+use protocols::{Layout, RatingTime, ResponseStyle, SessionPlan, Stimuli, StimulusId};
 
 use super::geometry::{Geometry, Slot};
 use crate::{Button, Response, Screen, Session, StimulusSet};
@@ -21,13 +21,14 @@ const INK: Color32 = Color32::from_gray(12);
 /// Every image of the study on the graphics card, from the start, so that no exposure waits for one.
 pub(crate) struct Pictures {
     textures: BTreeMap<StimulusId, TextureHandle>,
-    zero_anchor: StimulusId,
-    ten_anchor: StimulusId,
+    zero_anchor: Option<StimulusId>,
+    /// What each image is shown with as the best quality.
+    references: BTreeMap<StimulusId, StimulusId>,
     pub(crate) image_px: [u32; 2],
 }
 
 impl Pictures {
-    pub(crate) fn upload(context: &Context, set: &StimulusSet, plan: &StimulusPlan) -> Self {
+    pub(crate) fn upload(context: &Context, set: &StimulusSet, stimuli: &Stimuli) -> Self {
         let upload = |(id, image): (&StimulusId, &crate::ScreenImage)| {
             let size = image.size_px.map(|pixels| pixels as usize);
             let image = ColorImage::from_rgb(size, &image.rgb);
@@ -36,9 +37,11 @@ impl Pictures {
         };
         Self {
             textures: set.images().iter().map(upload).collect(),
-            zero_anchor: plan.zero_anchor(),
-            ten_anchor: plan.ten_anchor(),
-            image_px: plan.size_px,
+            zero_anchor: stimuli.zero_anchor(),
+            references: (set.images().keys())
+                .filter_map(|id| Some((id.clone(), stimuli.reference_of(id)?)))
+                .collect(),
+            image_px: set.size_px(),
         }
     }
 }
@@ -122,11 +125,11 @@ impl Brush<'_> {
 
     fn image(&self, slot: Slot, rect_px: Rect, test_image: &StimulusId, pictures: &Pictures) {
         let id = match slot {
-            Slot::ZeroAnchor => &pictures.zero_anchor,
-            Slot::Test => test_image,
-            Slot::TenAnchor => &pictures.ten_anchor,
+            Slot::ZeroAnchor => pictures.zero_anchor.as_ref(),
+            Slot::Test => Some(test_image),
+            Slot::TenAnchor => pictures.references.get(test_image),
         };
-        if let Some(texture) = pictures.textures.get(id) {
+        if let Some(texture) = id.and_then(|id| pictures.textures.get(id)) {
             let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
             let rect = self.geometry.points(rect_px);
             self.painter

@@ -29,7 +29,7 @@ pub(crate) fn small_study(folder: &Path) -> Study {
 pub(crate) fn write_stimuli(study: &Study, folder: &Path) -> PathBuf {
     let stimuli = folder.join("stimuli");
     fs::create_dir_all(&stimuli).unwrap();
-    let plan = study.protocol.stimuli.clone();
+    let plan = study.protocol.stimuli.rendered().unwrap().clone();
     let stimuli_of_plan = plan.stimuli();
     let entries = stimuli_of_plan.iter().map(|stimulus| {
         let png = png(stimulus, plan.size_px);

@@ -133,10 +133,10 @@ fn refusal(study: &Study, folder: &Path) -> String {
 fn a_checkpoint_of_another_plan_is_refused() {
     let (folder, _) = ended();
     let mut other = small_study();
-    other.protocol.stimuli.seed += 1;
+    other.protocol.stimuli.rendered_mut().unwrap().seed += 1;
     assert!(refusal(&other, folder.path()).contains("another scene, plan"));
     let mut other = small_study();
-    other.protocol.stimuli.size_px = [41, 30];
+    other.protocol.stimuli.rendered_mut().unwrap().size_px = [41, 30];
     assert!(refusal(&other, folder.path()).contains("another scene, plan"));
     render(&small_study(), folder.path(), 1);
 }

@@ -35,7 +35,13 @@ fn one_and_two_threads_make_the_same_set_and_an_image_alone_is_that_of_the_set()
         threads: NonZeroUsize::new(2),
         ..request(&study, 3210, 4000)
     };
-    let summary = render_image(&study.scene_path(), &request, &alone, &Watch::UNWATCHED).unwrap();
+    let summary = render_image(
+        &study.scene_path().unwrap(),
+        &request,
+        &alone,
+        &Watch::UNWATCHED,
+    )
+    .unwrap();
     assert!(
         fs::read(&alone).unwrap() == fs::read(folders[0].path().join("a3210_c004k.exr")).unwrap()
     );
@@ -61,8 +67,8 @@ fn a_scene_or_a_request_that_cannot_be_is_refused_before_anything_is_written() {
         rays_a: RayCount::new(10).unwrap(),
         ..whole.clone()
     };
-    refused(&study.scene_path(), &few, "256 cells");
-    let text = fs::read_to_string(study.scene_path()).unwrap();
+    refused(&study.scene_path().unwrap(), &few, "256 cells");
+    let text = fs::read_to_string(study.scene_path().unwrap()).unwrap();
     let truncated = folder.path().join("truncated.toml");
     fs::write(&truncated, &text[..text.len() / 2 + 3]).unwrap();
     refused(&truncated, &whole, "truncated.toml");
@@ -70,7 +76,7 @@ fn a_scene_or_a_request_that_cannot_be_is_refused_before_anything_is_written() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 
     let mut astray = study;
-    astray.protocol.stimuli.scene = "no-such-scene.toml".to_owned();
+    astray.protocol.stimuli.rendered_mut().unwrap().scene = "no-such-scene.toml".to_owned();
     let set = folder.path().join("set");
     let error = render_set(&astray, &set, None, &Watch::UNWATCHED).unwrap_err();
     assert!(error.is_input() && !set.exists(), "{error}");
@@ -125,7 +131,7 @@ fn a_set_that_is_not_the_studys_or_was_changed_gives_no_figures() {
     let set = folder.path().join("set");
     render(&study, &set, 2);
     let mut other = study.clone();
-    other.protocol.stimuli.seed += 1;
+    other.protocol.stimuli.rendered_mut().unwrap().seed += 1;
     let error = draw_figures(&other, &set, &figures)
         .unwrap_err()
         .to_string();

@@ -122,7 +122,7 @@ fn channels_that_drive_together_are_remarked_in_the_manifest() {
     let folder = tempfile::tempdir().unwrap();
     render(&study, folder.path(), 2);
     assert!(Manifest::read(folder.path()).unwrap().remarks.is_empty());
-    study.protocol.stimuli.tree.driver = RefinementDriver::All;
+    study.protocol.stimuli.rendered_mut().unwrap().tree.driver = RefinementDriver::All;
     let summary = render(&study, folder.path(), 2);
     let manifest = Manifest::read(folder.path()).unwrap();
     assert_eq!(manifest.remarks, summary.remarks);
@@ -132,7 +132,7 @@ fn channels_that_drive_together_are_remarked_in_the_manifest() {
 #[test]
 fn a_study_that_needs_little_chroma_shades_little() {
     let mut study = small_study();
-    let plan = &mut study.protocol.stimuli;
+    let plan = study.protocol.stimuli.rendered_mut().unwrap();
     plan.sequences.truncate(1);
     plan.sequences[0].held_rays = plan.anchors.zero_rays;
     plan.anchors.ten_rays = plan.anchors.zero_rays;

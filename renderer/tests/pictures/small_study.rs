@@ -12,7 +12,7 @@ pub(crate) fn small_study() -> Study {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../protocols/meyer-liu-1992.toml");
     let text = std::fs::read_to_string(&path).unwrap();
     let mut protocol = Protocol::from_toml(&path, &text).unwrap();
-    let plan = &mut protocol.stimuli;
+    let plan = protocol.stimuli.rendered_mut().unwrap();
     plan.size_px = [40, 30];
     let counts = [1000, 2000, 3210, 4000].map(|rays| RayCount::new(rays).unwrap());
     plan.anchors.zero_rays = counts[0];
@@ -53,7 +53,7 @@ pub(crate) fn render(study: &Study, out: &Path, threads: usize) -> SetSummary {
 /// The request for one image of a study.
 pub(crate) fn request(study: &Study, rays_a: u32, rays_c1c2: u32) -> ImageRequest {
     let [rays_a, rays_c1c2] = [rays_a, rays_c1c2].map(|rays| RayCount::new(rays).unwrap());
-    ImageRequest::from_protocol(&study.protocol, rays_a, rays_c1c2)
+    ImageRequest::of_study(study.rendering().unwrap(), rays_a, rays_c1c2)
 }
 
 /// The bytes of one image, traced alone.
