@@ -1,11 +1,12 @@
 //! How far the picture of A at N rays is from the truth: the refined tree beside uniform sampling.
 //!
-//! `cargo bench -p renderer --bench tree_error -- SCENE` prints one line for each ray count. The truth has
-//! 256 jittered samples a pixel and the same exact filter. Uniform sampling is one jittered sample in each
-//! cell of a grid of N cells as square as can be, with the same reconstruction.
+//! `cargo bench -p renderer --bench tree_error -- SCENE...` prints one line for each scene and ray count; by
+//! default for three scenes of the project. The truth has 256 jittered samples a pixel and the same exact
+//! filter. Uniform sampling is one jittered sample in each cell of a grid of N cells as square as can be, with
+//! the same reconstruction. Errors are those of the linear value of A, not of the shown code.
 #![expect(clippy::print_stdout, reason = "a bench prints what it measured")]
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use protocols::{Channel, PerChannel, Quadrature, RefinementDriver};
 use rayon::prelude::*;
@@ -16,19 +17,27 @@ use renderer::{
 
 const SIZE_PX: [u32; 2] = [320, 320];
 
+/// The scenes measured where none is named.
+const SCENES: [&str; 3] = ["opponent-solids", "soft-spheres", "toy-village"];
+
 fn main() -> Result<(), RendererError> {
-    let mut arguments = std::env::args()
+    let named = std::env::args()
         .skip(1)
         .filter(|argument| !argument.starts_with("--"));
-    let default = || {
-        concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../stimuli/scenes/opponent-solids.toml"
-        )
-        .to_owned()
-    };
-    let path = arguments.next().unwrap_or_else(default);
-    let scene = Scene::read(Path::new(&path))?;
+    let mut scenes: Vec<PathBuf> = named.map(PathBuf::from).collect();
+    if scenes.is_empty() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../stimuli/scenes");
+        scenes.extend(SCENES.map(|name| folder.join(name).with_extension("toml")));
+    }
+    for path in scenes {
+        println!("{}", path.display());
+        println!("    rays   tree   uniform  ratio");
+        measure(&Scene::read(&path)?);
+    }
+    Ok(())
+}
+
+fn measure(scene: &Scene) {
     let sampler = scene.sampler(Quadrature::Bands(16), SIZE_PX);
     let plan = TracePlan {
         seed: 1992,
@@ -38,24 +47,17 @@ fn main() -> Result<(), RendererError> {
         stops: PerChannel::from_fn(|_| Reach::rays(140_000)),
     };
     let tree = trace(&sampler, &plan, &|_, _| ());
-    for channel in Channel::ALL {
-        let truth = uniform(&sampler, channel, [16 * SIZE_PX[0]; 2]);
-        println!("{channel}: rays, rms error of the tree, of uniform sampling, ratio");
-        for rays in [10_000_u32, 30_000, 50_000, 90_000, 140_000] {
-            let leaves = tree
-                .leaves(channel, Reach::rays(rays as usize))
-                .unwrap_or_default();
-            let refined = rms(&reconstruct(&leaves, SIZE_PX), &truth);
-            let side = f64::from(rays).sqrt();
-            let columns = count(side);
-            let even = rms(
-                &uniform(&sampler, channel, [columns, rays / columns]),
-                &truth,
-            );
-            println!("{rays:>8} {refined:.4} {even:.4} {:.2}", refined / even);
-        }
+    let truth = uniform(&sampler, Channel::A, [16 * SIZE_PX[0]; 2]);
+    for rays in [10_000_u32, 30_000, 50_000, 90_000, 140_000] {
+        let leaves = tree
+            .leaves(Channel::A, Reach::rays(rays as usize))
+            .unwrap_or_default();
+        let refined = rms(&reconstruct(&leaves, SIZE_PX), &truth);
+        let columns = count(f64::from(rays).sqrt());
+        let grid = uniform(&sampler, Channel::A, [columns, rays / columns]);
+        let even = rms(&grid, &truth);
+        println!("{rays:>8} {refined:.4} {even:.4} {:.2}", refined / even);
     }
-    Ok(())
 }
 
 fn rms(image: &ChannelImage, truth: &ChannelImage) -> f64 {

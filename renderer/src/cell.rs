@@ -1,11 +1,10 @@
-//! A cell of the screen tree: a rectangle of the screen that follows from a path of halvings alone.
+//! A cell of the screen tree: a rectangle of the screen that follows from halvings alone.
 //!
-//! The root is the whole screen. A cell is halved along its longer side as it is on the picture, along x if
-//! both are equal: on a square picture along x at even depths and along y at odd ones, on a longer picture
-//! first as often along the long side as makes the cells about square. So cells of the same depth are equal,
-//! and a depth is a size. The path is the number of the cell: 1 for the root, then `2p` for the half nearer
-//! to 0 and `2p + 1` for the other, so that the random numbers of a cell can be a function of the cell and of
-//! nothing else.
+//! The root is the whole screen. A cell may be halved along x or along y; [`Cell::cut`] says which of the two
+//! keeps it about as wide as high on the picture. Its number along an axis is 1 for the whole screen, then `2n`
+//! for the half nearer to 0 and `2n + 1` for the other; the two numbers are the cell, however the halvings
+//! along x and y followed each other, so that its random numbers can be a function of the cell and of nothing
+//! else.
 //!
 //! Source: Painter & Sloan (1989), as described in section 3.1 of Meyer & Liu (1992).
 
@@ -18,20 +17,16 @@ use crate::sampler::ScreenPoint;
 /// A rectangle that halving the screen leads to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Cell {
-    /// The path in the lower bits; above [`SHAPE_SHIFT`] how the screen begins to be halved.
-    bits: u64,
+    x: u32,
+    y: u32,
 }
-
-/// Above the longest path, of 49 bits.
-const SHAPE_SHIFT: u32 = 56;
-const PATH: u64 = (1 << SHAPE_SHIFT) - 1;
-/// The bit of the shape that says that y comes first.
-const Y_FIRST: u64 = 16;
 
 /// An axis of the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Axis {
+pub enum Axis {
+    /// From left to right.
     X,
+    /// From top to bottom.
     Y,
 }
 
@@ -52,60 +47,16 @@ pub struct Rectangle {
 }
 
 impl Cell {
-    /// The whole screen of a square picture.
-    pub const ROOT: Self = Self { bits: 1 };
+    /// The whole screen.
+    pub const ROOT: Self = Self { x: 1, y: 1 };
 
-    /// No cell is halved at this depth: on a square picture its side is then 2⁻²⁴ of the screen.
+    /// No cell is halved at this depth: on a square picture its side is then 2⁻²⁴ of the screen, and on a picture
+    /// one of whose sides is 2¹⁴ times the other no less than 2⁻³¹.
     pub const DEEPEST: u32 = 48;
-
-    /// The whole screen of a picture of this size, none of whose sides is 2¹⁵ times the other or longer.
-    pub fn screen(size_px: [u32; 2]) -> Self {
-        let [width, height] = size_px.map(u64::from);
-        let is_y_first = height > width;
-        let is_long = |halvings: u32| {
-            if is_y_first {
-                height > width << halvings
-            } else {
-                width >= height << halvings
-            }
-        };
-        // The first halving is along the long side in any case.
-        let more: u64 = (1..=15).take_while(|&halvings| is_long(halvings)).count() as u64;
-        let shape = more | if is_y_first { Y_FIRST } else { 0 };
-        Self {
-            bits: (shape << SHAPE_SHIFT) | 1,
-        }
-    }
-
-    const fn path(self) -> u64 {
-        self.bits & PATH
-    }
-
-    /// The axis of the first halving, and how many halvings are along it before the other has its turn.
-    const fn beginning(self) -> (Axis, u32) {
-        let shape = self.bits >> SHAPE_SHIFT;
-        let axis = if shape & Y_FIRST == 0 {
-            Axis::X
-        } else {
-            Axis::Y
-        };
-        (axis, 1 + (shape % Y_FIRST) as u32)
-    }
-
-    /// How many halvings along the first axis and along the other lead here.
-    fn halvings(self) -> [u32; 2] {
-        let (_, beginning) = self.beginning();
-        let depth = self.depth();
-        let alternating = depth.saturating_sub(beginning);
-        [
-            depth.min(beginning) + alternating / 2,
-            alternating.div_ceil(2),
-        ]
-    }
 
     /// How many halvings lead here: 0 for the whole screen.
     pub const fn depth(self) -> u32 {
-        self.path().ilog2()
+        self.x.ilog2() + self.y.ilog2()
     }
 
     /// The fraction of the screen that the cell covers, 2^−depth.
@@ -113,58 +64,56 @@ impl Cell {
         half_to_the(self.depth())
     }
 
-    /// The two halves, the one nearer to 0 first.
-    pub const fn halves(self) -> [Self; 2] {
-        let shape = self.bits & !PATH;
-        let path = self.path() << 1;
-        [
-            Self { bits: shape | path },
-            Self {
-                bits: shape | path | 1,
-            },
-        ]
+    /// The two halves along an axis, the one nearer to 0 first.
+    pub const fn halves(self, axis: Axis) -> [Self; 2] {
+        let Self { x, y } = self;
+        match axis {
+            Axis::X => [Self { x: 2 * x, y }, Self { x: 2 * x + 1, y }],
+            Axis::Y => [Self { x, y: 2 * y }, Self { x, y: 2 * y + 1 }],
+        }
     }
 
-    /// The least depth at which no side of a cell is longer than this many pixels of the picture.
-    pub fn depth_of_side(size_px: [u32; 2], longest_px: f64) -> u32 {
+    /// The axis along which the cell is halved on a picture of this size: that of its longer side, or the one
+    /// that is preferred where the cell is a square or nearly so.
+    ///
+    /// So no cell is more than 2.2 times as long as wide, but the first on a long picture; and of two halvings
+    /// of a square one is along x and one along y.
+    pub fn cut(self, size_px: [u32; 2], preferred: Axis) -> Axis {
         let [width, height] = size_px.map(f64::from);
-        let mut cell = Self::screen(size_px);
-        let is_too_long = |cell: Self| {
-            let rectangle = cell.rectangle();
-            rectangle.width * width > longest_px || rectangle.height * height > longest_px
-        };
-        while cell.depth() < Self::DEEPEST && is_too_long(cell) {
-            cell = cell.halves()[0];
+        let sides = [
+            width * half_to_the(self.x.ilog2()),
+            height * half_to_the(self.y.ilog2()),
+        ];
+        longer(sides).unwrap_or(preferred)
+    }
+
+    /// The least depth at which no side of a cell is longer than this many pixels of the picture, whatever axes
+    /// were preferred.
+    pub fn depth_of_side(size_px: [u32; 2], longest_px: f64) -> u32 {
+        let [mut width, mut height] = size_px.map(f64::from);
+        let mut depth = 0;
+        while depth < Self::DEEPEST && width.max(height) > longest_px {
+            let cut = longer([width, height]);
+            if cut != Some(Axis::Y) {
+                width *= 0.5;
+                depth += 1;
+            }
+            // Where either may come first, the longer side may come second.
+            if cut != Some(Axis::X) {
+                height *= 0.5;
+                depth += 1;
+            }
         }
-        cell.depth()
+        depth.min(Self::DEEPEST)
     }
 
     /// Where the cell lies; exact, since every edge is a dyadic fraction.
     pub fn rectangle(self) -> Rectangle {
-        let (axis, beginning) = self.beginning();
-        let depth = self.depth();
-        let steps = self.path() ^ (1 << depth);
-        let alternating = depth.saturating_sub(beginning);
-        let begun = steps >> alternating;
-        // The other axis has the first turn, and every second one from there.
-        let steps = steps & ((1 << alternating) - 1);
-        let [first_steps, other_steps] = if alternating.is_multiple_of(2) {
-            [steps, steps >> 1]
-        } else {
-            [steps >> 1, steps]
-        };
-        let along_first = (begun << (alternating / 2)) | u64::from(even_bits(first_steps));
-        let [first, other] = self.halvings();
-        let first = (along_first as f64 * half_to_the(first), half_to_the(first));
-        let other_length = half_to_the(other);
-        let other = (
-            f64::from(even_bits(other_steps)) * other_length,
-            other_length,
-        );
-        let ((left, width), (top, height)) = match axis {
-            Axis::X => (first, other),
-            Axis::Y => (other, first),
-        };
+        let [(left, width), (top, height)] = [self.x, self.y].map(|number| {
+            let halvings = number.ilog2();
+            let length = half_to_the(halvings);
+            (f64::from(number ^ (1 << halvings)) * length, length)
+        });
         Rectangle {
             left,
             top,
@@ -173,28 +122,12 @@ impl Cell {
         }
     }
 
-    /// The axis along which the cell is halved.
-    fn axis(self) -> Axis {
-        let (axis, beginning) = self.beginning();
-        let depth = self.depth();
-        let is_first_turn = depth < beginning || !(depth - beginning).is_multiple_of(2);
-        match (axis, is_first_turn) {
-            (Axis::X, true) | (Axis::Y, false) => Axis::X,
-            (Axis::Y, true) | (Axis::X, false) => Axis::Y,
-        }
-    }
-
-    /// Which of the two halves holds `point`, which lies in the cell: 0 or 1.
-    pub fn half_of(self, point: ScreenPoint) -> usize {
-        let Rectangle {
-            left,
-            top,
-            width,
-            height,
-        } = self.rectangle();
-        let is_second = match self.axis() {
-            Axis::X => point.x >= left + 0.5 * width,
-            Axis::Y => point.y >= top + 0.5 * height,
+    /// Which of the two halves along an axis holds `point`, which lies in the cell: 0 or 1.
+    pub fn half_of(self, point: ScreenPoint, axis: Axis) -> usize {
+        let middle = self.rectangle().middle();
+        let is_second = match axis {
+            Axis::X => point.x >= middle.x,
+            Axis::Y => point.y >= middle.y,
         };
         usize::from(is_second)
     }
@@ -215,12 +148,12 @@ impl Cell {
 
     /// The uniform random point of this cell, a function of the seed and the cell alone.
     ///
-    /// Two 53-bit fractions from the `ChaCha8` stream whose key is the seed and whose number is the path.
+    /// Two 53-bit fractions from the `ChaCha8` stream whose key is the seed and whose number is the cell.
     pub fn random_point(self, seed: u64) -> ScreenPoint {
         let mut key = [0; 32];
         key[..8].copy_from_slice(&seed.to_le_bytes());
         let mut random = ChaCha8Rng::from_seed(key);
-        random.set_stream(self.path());
+        random.set_stream((u64::from(self.x) << 32) | u64::from(self.y));
         let mut fraction = || (random.next_u64() >> 11) as f64 * half_to_the(53);
         let rectangle = self.rectangle();
         ScreenPoint {
@@ -244,113 +177,122 @@ impl Rectangle {
     }
 }
 
-fn half_to_the(exponent: u32) -> f64 {
+pub(crate) fn half_to_the(exponent: u32) -> f64 {
     f64::from_bits((1023 - u64::from(exponent)) << 52)
 }
 
-/// The bits at the even places of the lower 48, pushed together.
-fn even_bits(bits: u64) -> u32 {
-    let mut bits = bits & 0x5555_5555_5555_5555;
-    for (shift, mask) in [
-        (1, 0x3333_3333_3333_3333),
-        (2, 0x0f0f_0f0f_0f0f_0f0f),
-        (4, 0x00ff_00ff_00ff_00ff),
-        (8, 0x0000_ffff_0000_ffff),
-        (16, 0x0000_0000_ffff_ffff),
-    ] {
-        bits = (bits | (bits >> shift)) & mask;
+/// The axis of the longer side of a rectangle, unless it is a square within a tenth.
+fn longer([width, height]: [f64; 2]) -> Option<Axis> {
+    if width > 1.1 * height {
+        Some(Axis::X)
+    } else if height > 1.1 * width {
+        Some(Axis::Y)
+    } else {
+        None
     }
-    u32::try_from(bits).unwrap_or(u32::MAX)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// The plain way: halve the longer side of the rectangle step by step along the path.
-    fn rectangle_by_halving(path: u64, size_px: [u32; 2]) -> Rectangle {
-        let mut rectangle = Rectangle {
-            left: 0.0,
-            top: 0.0,
-            width: 1.0,
-            height: 1.0,
-        };
-        let [width_px, height_px] = size_px.map(f64::from);
-        let depth = path.ilog2();
-        for step in 0..depth {
-            let is_second = (path >> (depth - 1 - step)) & 1 == 1;
-            let is_along_x = rectangle.width * width_px >= rectangle.height * height_px;
-            let (start, length) = if is_along_x {
-                (&mut rectangle.left, &mut rectangle.width)
-            } else {
-                (&mut rectangle.top, &mut rectangle.height)
-            };
-            *length *= 0.5;
-            if is_second {
-                *start += *length;
-            }
-        }
-        rectangle
-    }
-
-    const SIZES_PX: [[u32; 2]; 9] = [
+    const SIZES_PX: [[u32; 2]; 11] = [
         [320, 320],
         [1, 1],
+        [330, 320],
         [640, 320],
         [639, 320],
         [641, 320],
+        [640, 480],
         [320, 640],
         [100, 1281],
         [16_384, 1],
         [1, 16_384],
     ];
 
+    /// A cell after some halvings, each by the bits of a number: the axis that is preferred, and the half.
+    fn descend(size_px: [u32; 2], depth: u32, mut choices: u64) -> (Cell, Rectangle) {
+        let mut cell = Cell::ROOT;
+        let mut rectangle = cell.rectangle();
+        for _ in 0..depth {
+            let preferred = if choices & 1 == 0 { Axis::X } else { Axis::Y };
+            let half = usize::from(choices & 2 != 0);
+            choices = choices.rotate_right(2);
+            let axis = cell.cut(size_px, preferred);
+            cell = cell.halves(axis)[half];
+            // The plain way.
+            let (start, length) = match axis {
+                Axis::X => (&mut rectangle.left, &mut rectangle.width),
+                Axis::Y => (&mut rectangle.top, &mut rectangle.height),
+            };
+            *length *= 0.5;
+            *start += half as f64 * *length;
+        }
+        (cell, rectangle)
+    }
+
+    fn choices(number: u64) -> u64 {
+        number.wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    }
+
     #[test]
-    fn a_rectangle_is_what_halving_the_longer_side_step_by_step_gives() {
-        let far = [(1 << 47) | 0x1234_5678_9abc, (1 << 48) | 0x0fed_cba9_8765];
+    fn a_rectangle_is_what_halving_step_by_step_gives() {
         for size_px in SIZES_PX {
-            for path in (1..5000).chain(far) {
-                let cell = Cell {
-                    bits: Cell::screen(size_px).bits ^ 1 ^ path,
-                };
-                assert_eq!(cell.rectangle(), rectangle_by_halving(path, size_px));
+            for number in 0..500 {
+                let depth = (number % 49) as u32;
+                let (cell, rectangle) = descend(size_px, depth, choices(number));
+                assert_eq!(cell.depth(), depth);
+                assert_eq!(cell.rectangle(), rectangle);
                 assert_eq!(cell.rectangle().area(), cell.area());
             }
         }
     }
 
     #[test]
-    fn the_screen_of_a_square_picture_is_the_root() {
-        assert_eq!(Cell::screen([320, 320]), Cell::ROOT);
+    fn a_cell_is_about_as_wide_as_high_on_the_picture() {
+        for size_px in SIZES_PX {
+            for number in 0..200 {
+                let (_, rectangle) = descend(size_px, 30, choices(number));
+                let width = rectangle.width * f64::from(size_px[0]);
+                let height = rectangle.height * f64::from(size_px[1]);
+                assert!((0.45..2.21).contains(&(width / height)), "{size_px:?}");
+            }
+        }
     }
 
     #[test]
-    fn the_depth_of_a_side_is_the_first_at_which_both_sides_are_no_longer() {
+    fn the_depth_of_a_side_is_the_first_at_which_no_side_is_longer() {
+        let longest_side_px = |size_px: [u32; 2], depth| {
+            let of_cell = |number| {
+                let (_, rectangle) = descend(size_px, depth, choices(number));
+                let width = rectangle.width * f64::from(size_px[0]);
+                width.max(rectangle.height * f64::from(size_px[1]))
+            };
+            (0..200).map(of_cell).fold(0.0, f64::max)
+        };
         for size_px in SIZES_PX {
             for longest_px in [0.3, 1.0, 2.39, 7.0, 5000.0] {
                 let depth = Cell::depth_of_side(size_px, longest_px);
-                let is_fine = |depth: u32| {
-                    let rectangle = rectangle_by_halving(1 << depth, size_px);
-                    rectangle.width * f64::from(size_px[0]) <= longest_px
-                        && rectangle.height * f64::from(size_px[1]) <= longest_px
-                };
-                assert!(is_fine(depth));
-                assert!(depth == 0 || !is_fine(depth - 1));
+                assert!(longest_side_px(size_px, depth) <= longest_px, "{size_px:?}");
+                assert!(
+                    depth == 0 || longest_side_px(size_px, depth - 1) > longest_px,
+                    "{size_px:?}, {longest_px}"
+                );
             }
         }
     }
 
     #[test]
     fn a_random_point_lies_in_its_cell_and_in_the_half_that_is_named() {
-        for path in 1..2000 {
-            let size_px = SIZES_PX[(path % 9) as usize];
-            let cell = Cell {
-                bits: Cell::screen(size_px).bits ^ 1 ^ path,
-            };
-            let point = cell.random_point(7);
-            let half = cell.halves()[cell.half_of(point)].rectangle();
-            assert!((half.left..half.left + half.width).contains(&point.x));
-            assert!((half.top..half.top + half.height).contains(&point.y));
+        for number in 0..2000 {
+            let (cell, _) = descend([640, 480], (number % 48) as u32, choices(number));
+            for point in [cell.random_point(7), cell.sample_point(7)] {
+                for axis in [Axis::X, Axis::Y] {
+                    let half = cell.halves(axis)[cell.half_of(point, axis)].rectangle();
+                    assert!((half.left..half.left + half.width).contains(&point.x));
+                    assert!((half.top..half.top + half.height).contains(&point.y));
+                }
+            }
         }
     }
 

@@ -33,7 +33,7 @@ impl ScreenTree {
     pub fn estimates(&self, channel: Channel, rays: usize) -> Option<Vec<Estimate>> {
         let rays = rays.clamp(1, self.len());
         let mut estimates = vec![Estimate::default(); 2 * rays - 1];
-        self.estimate(channel, rays, self.root(), &mut estimates)?;
+        self.estimate(channel, rays, PlacedNode::ROOT, &mut estimates)?;
         Some(estimates)
     }
 

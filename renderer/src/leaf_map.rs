@@ -1,25 +1,18 @@
 //! Which leaf lies where: a map of the screen on a grid of squares, kept while the tree grows.
 //!
-//! A square belongs to the leaf that covers its middle. The grid has at least eight squares for each leaf,
-//! but no more than four for a pixel along each side: leaves that are smaller still share a square, and the
+//! A square belongs to the leaf that covers its middle. The grid has at least four squares for each leaf, as
+//! long as it has no more than [`MOST_ALONG_A_SIDE`]. Leaves that are smaller than a square share one, and the
 //! map then knows one of them.
 //!
 //! Not here: what is made of the neighbours that are found; see [`leaves`](crate::leaves).
 
-use crate::cell::Rectangle;
+use crate::cell::{Axis, Rectangle};
 
 /// Squares for each leaf before the grid is made finer.
-const SQUARES_PER_LEAF: usize = 8;
+const SQUARES_PER_LEAF: usize = 4;
 
 /// The finest grid has no more squares along a side.
 const MOST_ALONG_A_SIDE: usize = 8192;
-
-/// An axis of the screen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Axis {
-    X,
-    Y,
-}
 
 /// A leaf beside another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,9 +36,13 @@ pub(crate) struct LeafMap {
 impl LeafMap {
     /// The map of a screen that is one leaf, number 0.
     pub(crate) fn new(size_px: [u32; 2]) -> Self {
-        let finest = size_px
-            .map(|size| (2 * size as usize).next_power_of_two())
-            .map(|squares| squares.min(MOST_ALONG_A_SIDE));
+        let longest = size_px[0].max(size_px[1]).max(1);
+        let finest = size_px.map(|size| {
+            let part = f64::from(size.max(1)) / f64::from(longest);
+            to_index(MOST_ALONG_A_SIDE as f64 * part)
+                .next_power_of_two()
+                .min(MOST_ALONG_A_SIDE)
+        });
         let mut map = Self {
             columns: 0,
             rows: 0,
@@ -80,6 +77,11 @@ impl LeafMap {
             let start = row * self.columns;
             self.leaves[start + from..start + to].fill(leaf);
         }
+    }
+
+    /// Whether a leaf at this place has a square of its own.
+    pub(crate) fn shows(&self, place: &Rectangle) -> bool {
+        place.width * self.columns as f64 >= 1.0 && place.height * self.rows as f64 >= 1.0
     }
 
     /// The leaf beyond the middle of each side of a place, as far as the screen goes and the map knows.
@@ -177,13 +179,16 @@ mod tests {
     }
 
     #[test]
-    fn a_finer_grid_is_empty_until_it_is_filled_and_no_finer_than_the_picture_asks() {
-        let mut map = three_leaves();
+    fn a_finer_grid_is_empty_until_it_is_filled_and_has_an_end() {
+        let mut map = LeafMap::new([16, 4]);
+        assert_eq!([map.columns, map.rows], [4, 1]);
         assert!(!map.resize(1));
+        map.enter(5, &place(0.0, 0.0, 1.0, 1.0));
         assert!(map.resize(3) && map.leaves.iter().all(|&leaf| leaf == 0));
-        assert!(map.leaves.len() >= 3 * SQUARES_PER_LEAF);
-        map.resize(1_000_000);
-        assert_eq!([map.columns, map.rows], [16, 16]);
+        assert_eq!([map.columns, map.rows], [8, 2]);
+        let mut long = LeafMap::new([16_384, 1]);
+        long.resize(1_000_000);
+        assert_eq!([long.columns, long.rows], [MOST_ALONG_A_SIDE, 1]);
     }
 
     /// Halves of one square: the second covers the middle.
@@ -191,6 +196,7 @@ mod tests {
     fn of_leaves_that_share_a_square_the_map_knows_the_one_over_its_middle() {
         let mut map = LeafMap::new([1, 1]);
         assert_eq!([map.columns, map.rows], [2, 2]);
+        assert!(map.shows(&place(0.0, 0.0, 0.5, 0.5)) && !map.shows(&place(0.0, 0.0, 0.25, 0.5)));
         map.enter(1, &place(0.0, 0.0, 0.25, 0.5));
         map.enter(2, &place(0.25, 0.0, 0.25, 0.5));
         let around = map.around(&place(0.0, 0.0, 0.25, 0.5));

@@ -4,19 +4,28 @@
 //! Every sample lies in one leaf, so a leaf has the number of its sample. When it is split, the old sample's
 //! half keeps the number.
 //!
+//! A leaf too small for the map is expected to be as its parent and its sibling lead to expect.
+//!
+//! A leaf is halved along the axis on which that neighbour lies that leads to expect the most, unless it is
+//! longer along the other.
+//!
 //! A round is the sixteenth of all leaves that has the highest [priority](crate::priority); while there are
 //! leaves above the minimum depth, those and no others. Priorities are held in classes, eight to an octave;
 //! within a class the older leaf comes first. A round depends on the leaves alone, and within it the order is
 //! fixed, so that a tree that ends within a round is the beginning of the one that goes on.
 
-use crate::cell::Cell;
-use crate::leaf_map::{Axis, LeafMap, Neighbour};
+use crate::cell::{Axis, Cell};
+use crate::leaf_map::{LeafMap, Neighbour};
 use crate::priority::{CLASSES, DUE, NEVER, PriorityRule, expected_variances};
 use crate::sampler::ScreenPoint;
 use crate::screen_tree::PlacedNode;
 
 /// One leaf in this many is split in a round.
 const SHARE: usize = 16;
+
+/// How much of the variance that is expected in a leaf is expected in its halves, where the map is too coarse to
+/// show them.
+const INHERITED: f32 = 0.6;
 
 /// What is known of the samples, by number.
 pub(crate) trait Samples {
@@ -27,31 +36,77 @@ pub(crate) trait Samples {
     fn variance(&self, one: u32, other: u32) -> f32;
 }
 
+/// The variance that a neighbour leads to expect in a leaf, and the axis on which that neighbour lies.
+///
+/// One number: negative along y.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Expected(f32);
+
+impl Expected {
+    const fn variance(self) -> f32 {
+        self.0.abs()
+    }
+
+    const fn axis(self) -> Axis {
+        if self.0.is_sign_negative() {
+            Axis::Y
+        } else {
+            Axis::X
+        }
+    }
+
+    /// The larger variance with its axis; the earlier one if they are equal.
+    fn raise(&mut self, variance: f32, axis: Axis) {
+        if variance > self.variance() {
+            self.0 = match axis {
+                Axis::X => variance,
+                Axis::Y => -variance,
+            };
+        }
+    }
+}
+
+/// A leaf that is to be split along an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Split {
+    pub(crate) leaf: PlacedNode,
+    pub(crate) axis: Axis,
+}
+
+impl Split {
+    /// The half in which the leaf's sample does not lie, which needs a new one.
+    pub(crate) fn free_half(&self, sample: ScreenPoint) -> Cell {
+        let Self { leaf, axis } = *self;
+        leaf.cell.halves(axis)[1 - leaf.cell.half_of(sample, axis)]
+    }
+}
+
 /// The leaves of a tree.
 #[derive(Debug)]
 pub(crate) struct Leaves {
     rule: PriorityRule,
+    size_px: [u32; 2],
     cells: Vec<Cell>,
     nodes: Vec<u32>,
-    /// The variance to be expected in each.
-    expected: Vec<f32>,
+    expected: Vec<Expected>,
     map: LeafMap,
 }
 
 impl Leaves {
     /// The one leaf of a tree of one sample.
-    pub(crate) fn new(root: PlacedNode, rule: PriorityRule, size_px: [u32; 2]) -> Self {
+    pub(crate) fn new(rule: PriorityRule, size_px: [u32; 2]) -> Self {
         Self {
             rule,
-            cells: vec![root.cell],
-            nodes: vec![root.index],
-            expected: vec![0.0],
+            size_px,
+            cells: vec![PlacedNode::ROOT.cell],
+            nodes: vec![PlacedNode::ROOT.index],
+            expected: vec![Expected::default()],
             map: LeafMap::new(size_px),
         }
     }
 
     /// The leaves of the next round, in its order; none if no leaf may be split.
-    pub(crate) fn next_round(&mut self) -> Vec<PlacedNode> {
+    pub(crate) fn next_round(&mut self) -> Vec<Split> {
         self.refine_map();
         let mut counts = vec![0_usize; CLASSES];
         for class in self.classes() {
@@ -80,7 +135,7 @@ impl Leaves {
             }
         }
         round.truncate(wanted);
-        round.into_iter().map(|leaf| self.node(leaf)).collect()
+        round.into_iter().map(|leaf| self.split_of(leaf)).collect()
     }
 
     /// The two halves of a leaf that was split take its place and look at what lies around them.
@@ -90,14 +145,20 @@ impl Leaves {
         } else {
             [children[1], children[0]]
         };
+        let before = self.expected[old.sample as usize];
         self.cells[old.sample as usize] = old.cell;
         self.nodes[old.sample as usize] = old.index;
         self.cells.push(new.cell);
         self.nodes.push(new.index);
-        self.expected.push(0.0);
+        self.expected.push(Expected::default());
         self.map.enter(new.sample, &new.cell.rectangle());
         for half in [old, new] {
             self.look_around(half, samples);
+            if !self.map.shows(&half.cell.rectangle()) {
+                let spread = samples.variance(old.sample, new.sample);
+                let variance = spread.max(INHERITED * before.variance());
+                self.expected[half.sample as usize].raise(variance, before.axis());
+            }
         }
     }
 
@@ -105,7 +166,7 @@ impl Leaves {
     fn look_around(&mut self, leaf: PlacedNode, samples: &impl Samples) {
         let own = leaf.sample;
         let around = self.map.around(&leaf.cell.rectangle());
-        let mut most = 0.0;
+        let mut expected = Expected::default();
         for neighbour in around.into_iter().flatten() {
             let other = neighbour.leaf;
             let variance = samples.variance(own, other);
@@ -114,23 +175,27 @@ impl Leaves {
             }
             let places = [own, other].map(|sample| samples.point(sample));
             let [here, there] = expected_variances(variance, share(neighbour, places));
-            most = here.max(most);
-            let expected = &mut self.expected[other as usize];
-            *expected = there.max(*expected);
+            expected.raise(here, neighbour.axis);
+            self.expected[other as usize].raise(there, neighbour.axis);
         }
-        self.expected[own as usize] = most;
+        self.expected[own as usize] = expected;
     }
 
     fn classes(&self) -> impl Iterator<Item = usize> {
         let leaves = self.cells.iter().zip(&self.expected);
-        leaves.map(|(cell, &expected)| self.rule.class(*cell, expected))
+        leaves.map(|(cell, &expected)| self.rule.class(*cell, expected.variance()))
     }
 
-    fn node(&self, leaf: u32) -> PlacedNode {
-        PlacedNode {
-            index: self.nodes[leaf as usize],
-            sample: leaf,
-            cell: self.cells[leaf as usize],
+    fn split_of(&self, leaf: u32) -> Split {
+        let place = leaf as usize;
+        let cell = self.cells[place];
+        Split {
+            leaf: PlacedNode {
+                index: self.nodes[place],
+                sample: leaf,
+                cell,
+            },
+            axis: cell.cut(self.size_px, self.expected[place].axis()),
         }
     }
 

@@ -51,7 +51,7 @@ mod watch;
 
 pub use account::RayAccount;
 pub use acuity_limits::{AcuityLimit, AcuityLimits};
-pub use cell::{Cell, Rectangle};
+pub use cell::{Axis, Cell, Rectangle};
 pub use channel_image::ChannelImage;
 pub use error::RendererError;
 pub use estimate::Estimate;

@@ -15,7 +15,7 @@
 //! Plain variance × area (section 3.1) knows of an edge only in the cells in which two samples happened to lie
 //! on different sides of it, and as often as not goes on in the half where the edge is not. Neighbours tell.
 
-use crate::cell::Cell;
+use crate::cell::{Cell, half_to_the};
 use crate::filter;
 
 /// The squared brightness step at which section 3.1 ends the subdivision.
@@ -59,7 +59,7 @@ impl PriorityRule {
     pub(crate) fn new(min_depth: u32, deepest: u32, pixel_area: f64) -> Self {
         let filter_area = filter::AREA_PX * pixel_area;
         let weight = |depth: u32| {
-            let area = 0.5_f64.powi(depth.cast_signed());
+            let area = half_to_the(depth);
             #[expect(
                 clippy::cast_possible_truncation,
                 reason = "a priority needs no more than the bits of its class"
@@ -86,9 +86,13 @@ impl PriorityRule {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cell::Axis;
 
     fn descend(levels: u32) -> Cell {
-        (0..levels).fold(Cell::ROOT, |cell, _| cell.halves()[0])
+        (0..levels).fold(Cell::ROOT, |cell, level| {
+            let axis = if level % 2 == 0 { Axis::X } else { Axis::Y };
+            cell.halves(axis)[0]
+        })
     }
 
     /// The class by arithmetic instead of bits: eighths of an octave from 2⁻¹²⁷.

@@ -16,10 +16,10 @@ use rayon::prelude::*;
 
 use crate::cell::Cell;
 use crate::checkpoint::TakenSample;
-use crate::leaves::{Leaves, Samples};
+use crate::leaves::{Leaves, Samples, Split};
 use crate::priority::PriorityRule;
 use crate::sampler::{GridPoint, Sampler, ScreenPoint};
-use crate::screen_tree::{NewSample, PlacedNode, Reach, ScreenTree};
+use crate::screen_tree::{NewSample, Reach, ScreenTree};
 
 /// Samples taken between two reports of progress: a round is taken in pieces of this many.
 const BATCH: usize = 4096;
@@ -103,16 +103,15 @@ pub(crate) fn trace_from<S: Sampler>(
 ) -> ScreenTree {
     let rays = plan.rays();
     let mut ray_tree = S::RayTree::default();
-    let screen = Cell::screen(plan.size_px);
-    let first = Probe::new(plan, 0, screen);
+    let first = Probe::new(plan, 0, Cell::ROOT);
     let first = match taken.first() {
         Some(taken) => first.recall(*taken),
         None => first.take(sampler, &mut ray_tree),
     };
-    let mut tree = ScreenTree::new(screen, &first, plan.capacity(), rays);
+    let mut tree = ScreenTree::new(&first, plan.capacity(), rays);
     let pixels = f64::from(plan.size_px[0]) * f64::from(plan.size_px[1]);
     let rule = PriorityRule::new(plan.min_depth, plan.deepest(), 1.0 / pixels);
-    let mut leaves = Leaves::new(tree.root(), rule, plan.size_px);
+    let mut leaves = Leaves::new(rule, plan.size_px);
     while tree.len() < rays {
         let mut round = leaves.next_round();
         round.truncate(rays - tree.len());
@@ -124,8 +123,8 @@ pub(crate) fn trace_from<S: Sampler>(
                 return tree;
             }
             let new = sample_batch(sampler, plan, &tree, batch, taken);
-            for (leaf, new) in batch.iter().zip(&new) {
-                let children = tree.split(*leaf, new);
+            for (split, new) in batch.iter().zip(&new) {
+                let children = tree.split(split.leaf, split.axis, new);
                 let samples = DriverSamples { plan, tree: &tree };
                 leaves.split(children, &samples);
             }
@@ -172,13 +171,12 @@ fn sample_batch<S: Sampler>(
     sampler: &S,
     plan: &TracePlan,
     tree: &ScreenTree,
-    batch: &[PlacedNode],
+    batch: &[Split],
     taken: &[TakenSample],
 ) -> Vec<NewSample> {
     let first = tree.len();
-    let take = |ray_tree: &mut S::RayTree, (place, leaf): (usize, &PlacedNode)| {
-        let PlacedNode { sample, cell, .. } = *leaf;
-        let free_half = cell.halves()[1 - cell.half_of(tree.point(sample))];
+    let take = |ray_tree: &mut S::RayTree, (place, split): (usize, &Split)| {
+        let free_half = split.free_half(tree.point(split.leaf.sample));
         let probe = Probe::new(plan, first + place, free_half);
         match taken.get(first + place) {
             Some(taken) => probe.recall(*taken),

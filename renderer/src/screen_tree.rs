@@ -6,7 +6,7 @@
 //! of samples is a prefix.
 //!
 //! Sample `k` makes the nodes `2k - 1` and `2k`. So a node needs no more than the number of the sample that
-//! split it and which half that sample went into: 4 bytes. Cells and samples of nodes follow on the way
+//! split it, the axis, and which half that sample went into: 4 bytes. Cells and samples of nodes follow on the way
 //! down from the root. With its place (8 bytes) and its values (at most 12) a sample takes 28 bytes.
 //!
 //! Two things hold after every public call, and the tests check them:
@@ -22,35 +22,49 @@
 use protocols::{Channel, PerChannel};
 
 use crate::account::RayAccount;
-use crate::cell::Cell;
+use crate::cell::{Axis, Cell};
 use crate::channel_samples::ChannelSamples;
 use crate::sampler::{GridPoint, ScreenPoint};
 
 /// A k-D tree over the screen, in the order of its making.
 #[derive(Clone, Debug)]
 pub struct ScreenTree {
-    root: Cell,
     nodes: Vec<Node>,
     samples: PerChannel<ChannelSamples>,
     points: Vec<GridPoint>,
 }
 
 /// What is stored of a node: 0 for a leaf; else the sample that split it, and above it one bit that says
-/// whether that sample lies in the first half.
+/// whether that sample lies in the first half and one that says whether the halves lie along y.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Node(u32);
 
 impl Node {
     const LEAF: Self = Self(0);
     const NEW_IS_FIRST: u32 = 1 << 31;
+    const ALONG_Y: u32 = 1 << 30;
 
-    const fn split_by(sample: u32, half: usize) -> Self {
-        Self(sample | if half == 0 { Self::NEW_IS_FIRST } else { 0 })
+    const fn split_by(sample: u32, half: usize, axis: Axis) -> Self {
+        let first = if half == 0 { Self::NEW_IS_FIRST } else { 0 };
+        let along_y = match axis {
+            Axis::X => 0,
+            Axis::Y => Self::ALONG_Y,
+        };
+        Self(sample | first | along_y)
     }
 
     /// The sample that split the node, 0 for a leaf.
     const fn splitter(self) -> u32 {
-        self.0 & !Self::NEW_IS_FIRST
+        self.0 & !(Self::NEW_IS_FIRST | Self::ALONG_Y)
+    }
+
+    /// The axis along which the node was split.
+    const fn axis(self) -> Axis {
+        if self.0 & Self::ALONG_Y == 0 {
+            Axis::X
+        } else {
+            Axis::Y
+        }
     }
 
     /// The samples of the two children of a node that held `old`.
@@ -74,19 +88,17 @@ pub(crate) struct PlacedNode {
 }
 
 impl PlacedNode {
-    /// The root of any tree over this screen.
-    pub(crate) const fn root(screen: Cell) -> Self {
-        Self {
-            index: 0,
-            sample: 0,
-            cell: screen,
-        }
-    }
+    /// The root of any tree.
+    pub(crate) const ROOT: Self = Self {
+        index: 0,
+        sample: 0,
+        cell: Cell::ROOT,
+    };
 
     fn children(self, node: Node) -> [Self; 2] {
         let first = 2 * node.splitter() - 1;
         let samples = node.samples_of_children(self.sample);
-        let halves = self.cell.halves();
+        let halves = self.cell.halves(node.axis());
         std::array::from_fn(|half| Self {
             index: if half == 0 { first } else { first + 1 },
             sample: samples[half],
@@ -132,21 +144,15 @@ pub(crate) struct NewSample {
 
 impl ScreenTree {
     /// The most samples that a tree can hold.
-    pub const MOST_SAMPLES: u32 = Node::NEW_IS_FIRST;
+    pub const MOST_SAMPLES: u32 = Node::ALONG_Y;
 
     /// The tree of one cell, the screen, with its sample; with room for `capacity` samples in all.
     ///
     /// Room that is not used is not touched, so it takes no memory.
-    pub(crate) fn new(
-        root: Cell,
-        first: &NewSample,
-        capacity: PerChannel<usize>,
-        rays: usize,
-    ) -> Self {
+    pub(crate) fn new(first: &NewSample, capacity: PerChannel<usize>, rays: usize) -> Self {
         let mut nodes = Vec::with_capacity(2 * rays);
         nodes.push(Node::LEAF);
         let mut tree = Self {
-            root,
             nodes,
             samples: PerChannel::from_fn(|channel| {
                 ChannelSamples::with_capacity(capacity[channel])
@@ -157,12 +163,17 @@ impl ScreenTree {
         tree
     }
 
-    /// Splits a leaf: its sample keeps the half that it lies in, `new` goes into the other.
+    /// Splits a leaf along an axis: its sample keeps the half that it lies in, `new` goes into the other.
     ///
     /// Gives the two children.
-    pub(crate) fn split(&mut self, leaf: PlacedNode, new: &NewSample) -> [PlacedNode; 2] {
-        let old_half = leaf.cell.half_of(self.point(leaf.sample));
-        let node = Node::split_by(as_index(self.points.len()), 1 - old_half);
+    pub(crate) fn split(
+        &mut self,
+        leaf: PlacedNode,
+        axis: Axis,
+        new: &NewSample,
+    ) -> [PlacedNode; 2] {
+        let old_half = leaf.cell.half_of(self.point(leaf.sample), axis);
+        let node = Node::split_by(as_index(self.points.len()), 1 - old_half, axis);
         self.nodes[leaf.index as usize] = node;
         self.nodes.extend([Node::LEAF; 2]);
         self.store(new);
@@ -217,11 +228,6 @@ impl ScreenTree {
         self.samples[channel].get(sample)
     }
 
-    /// The root.
-    pub(crate) const fn root(&self) -> PlacedNode {
-        PlacedNode::root(self.root)
-    }
-
     /// The children that a node had after `rays` samples, if it was split by then.
     pub(crate) fn children(&self, node: PlacedNode, rays: usize) -> Option<[PlacedNode; 2]> {
         let stored = self.nodes[node.index as usize];
@@ -233,7 +239,7 @@ impl ScreenTree {
     ///
     /// A ray count beyond the end of the tree means the whole tree.
     pub(crate) fn leaf_nodes(&self, reach: Reach) -> impl Iterator<Item = PlacedNode> {
-        let mut waiting = vec![self.root()];
+        let mut waiting = vec![PlacedNode::ROOT];
         std::iter::from_fn(move || {
             let mut node = waiting.pop()?;
             while node.cell.depth() < reach.depth

@@ -61,7 +61,7 @@ fn pixels_are_the_filtered_picture_within_and_at_the_borders() {
 /// it is 1/2. Pixels 1 and 3 have centres one pixel away from the edge, where the tent ends: 1 and 0.
 #[test]
 fn a_pixel_that_an_edge_halves_is_half() {
-    let [left, right] = Cell::ROOT.halves();
+    let [left, right] = Cell::ROOT.halves(renderer::Axis::X);
     let leaves = [
         Leaf {
             cell: left,
