@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use analysis::{Design, Pilots};
+use analysis::{AnalysisOptions, AsymptoteOption, Design, Pilots, TableAnalysis};
 use protocols::Study;
 
-use crate::command_line::{AnovaArguments, ReportArguments};
+use crate::command_line::{AnovaArguments, BesideAnova, ReportArguments};
 use crate::console;
+use crate::follow_up;
 
 pub(crate) fn report(arguments: &ReportArguments) -> anyhow::Result<()> {
     let study = Study::read(&arguments.protocol)?;
@@ -36,20 +37,55 @@ pub(crate) fn write_report(
 }
 
 pub(crate) fn anova(arguments: &AnovaArguments) -> anyhow::Result<()> {
+    if let Some(printed) = &arguments.explain {
+        console::print(if arguments.json {
+            printed.to_json()
+        } else {
+            printed.explained()
+        })?;
+        return Ok(());
+    }
+    let (Some(table), Some(subject), Some(rating)) =
+        (&arguments.table, &arguments.subject, &arguments.rating)
+    else {
+        anyhow::bail!("a table, --subject and --rating are needed");
+    };
     let design = Design {
-        subject: arguments.subject.clone(),
-        rating: arguments.rating.clone(),
+        subject: subject.clone(),
+        rating: rating.clone(),
         within: arguments.within.clone(),
         between: arguments.between.clone(),
         observed: arguments.observed.clone(),
         sums_of_squares: arguments.sums_of_squares.into(),
         missing: arguments.missing.into(),
     };
-    let table = analysis::anova_of_table(&arguments.table, &design)?;
+    let analysis = TableAnalysis::of_table(table, &design, &options(&arguments.beside))?;
     console::print(if arguments.json {
-        table.to_json()
+        analysis.to_json()
     } else {
-        table.to_text()
+        analysis.to_text()
     })?;
     Ok(())
+}
+
+fn options(beside: &BesideAnova) -> AnalysisOptions {
+    let follow_ups = [
+        &beside.simple,
+        &beside.pairwise,
+        &beside.control,
+        &beside.trends,
+        &beside.contrast,
+    ];
+    AnalysisOptions {
+        follow_ups: follow_ups.into_iter().flatten().cloned().collect(),
+        confidence: beside.confidence,
+        n_permutations: beside.distribution_free.then_some(beside.permutations),
+        asymptote: beside.asymptote.as_ref().map(|text| {
+            let (factor, by) = follow_up::place(text);
+            AsymptoteOption { factor, by }
+        }),
+        n_resamples: beside.resamples,
+        delta: beside.delta,
+        seed: beside.seed,
+    }
 }

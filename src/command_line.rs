@@ -3,10 +3,14 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+use analysis::PrintedF;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use protocols::{
-    Missing, Observer, Quadrature, RayCount, RefinementDriver, Study, SubjectId, SumsOfSquares,
+    FollowUpPlan, Missing, Observer, Quadrature, RayCount, RefinementDriver, Study, SubjectId,
+    SumsOfSquares,
 };
+
+use crate::follow_up;
 
 /// A psychophysics experiment harness: scene, rays, tree, channel images, stimuli, session, ratings, ANOVA,
 /// report.
@@ -37,7 +41,7 @@ pub(crate) enum Command {
     /// Analyse the ratings of a study and write the report.
     Report(ReportArguments),
     /// Analysis of variance of any table in long format.
-    Anova(AnovaArguments),
+    Anova(Box<AnovaArguments>),
     /// The paper's study end to end: render, simulate, report. Needs no display.
     Replicate(ReplicateArguments),
 }
@@ -197,13 +201,14 @@ pub(crate) struct ReportArguments {
 #[derive(Debug, Args)]
 pub(crate) struct AnovaArguments {
     /// The table: CSV or TSV with a header line, one rating a row.
-    pub(crate) table: PathBuf,
+    #[arg(required_unless_present = "explain")]
+    pub(crate) table: Option<PathBuf>,
     /// Column that names the subject.
-    #[arg(long, value_name = "COLUMN")]
-    pub(crate) subject: String,
+    #[arg(long, value_name = "COLUMN", required_unless_present = "explain")]
+    pub(crate) subject: Option<String>,
     /// Column with the rating.
-    #[arg(long, value_name = "COLUMN")]
-    pub(crate) rating: String,
+    #[arg(long, value_name = "COLUMN", required_unless_present = "explain")]
+    pub(crate) rating: Option<String>,
     /// Columns of the factors of which every subject has seen every level.
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',')]
     pub(crate) within: Vec<String>,
@@ -219,9 +224,73 @@ pub(crate) struct AnovaArguments {
     /// What is done with a subject of whom a rating is missing.
     #[arg(long, value_name = "WHAT", default_value = "drop")]
     pub(crate) missing: MissingArgument,
+    #[command(flatten)]
+    pub(crate) beside: BesideAnova,
+    /// Say which designs a printed F value allows, such as "F(12,120)=51.44", and stop.
+    #[arg(long, value_name = "F", conflicts_with_all = ["table", "subject", "rating"])]
+    pub(crate) explain: Option<PrintedF>,
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// What is computed beside the analysis of variance.
+#[derive(Debug, Args)]
+pub(crate) struct BesideAnova {
+    /// The effect of one factor at each level of another.
+    #[arg(long, value_name = "FACTOR@FACTOR", value_parser = follow_up::simple)]
+    pub(crate) simple: Vec<FollowUpPlan>,
+    /// Every pair of levels of a factor, over all else or at each level of another.
+    #[arg(long, value_name = "FACTOR[@FACTOR]", value_parser = follow_up::pairwise)]
+    pub(crate) pairwise: Vec<FollowUpPlan>,
+    /// Every other level of a factor against one.
+    #[arg(long, value_name = "FACTOR=LEVEL", value_parser = follow_up::control)]
+    pub(crate) control: Vec<FollowUpPlan>,
+    /// Orthogonal polynomials up to a degree (3).
+    #[arg(long, value_name = "FACTOR[:DEGREE]", value_parser = follow_up::trends)]
+    pub(crate) trends: Vec<FollowUpPlan>,
+    /// A contrast of levels by weights that sum to zero, such as "rays:10K=-1,130K=1".
+    #[arg(long, value_name = "FACTOR:LEVEL=WEIGHT,...", value_parser = follow_up::contrast)]
+    pub(crate) contrast: Vec<FollowUpPlan>,
+    /// Friedman's test, aligned ranks and permutation tests too.
+    #[arg(long)]
+    pub(crate) distribution_free: bool,
+    /// Where the curve over a factor flattens, for each level of another.
+    #[arg(long, value_name = "FACTOR[@FACTOR]")]
+    pub(crate) asymptote: Option<String>,
+    /// Ratings closer than this are equivalent.
+    #[arg(long, default_value_t = 1.0, value_parser = positive)]
+    pub(crate) delta: f64,
+    /// The confidence level of intervals.
+    #[arg(long, default_value_t = 0.95, value_parser = confidence)]
+    pub(crate) confidence: f64,
+    /// How many random arrangements a permutation test has where there are too many to try all.
+    #[arg(long, default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(100..=10_000_000))]
+    pub(crate) permutations: u32,
+    /// How often subjects are drawn again for the interval of an asymptote.
+    #[arg(long, default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(200..=10_000_000))]
+    pub(crate) resamples: u32,
+    /// The seed of both.
+    #[arg(long, default_value_t = 1992)]
+    pub(crate) seed: u64,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let value = text
+        .parse()
+        .ok()
+        .filter(|value: &f64| *value > 0.0 && value.is_finite());
+    value.ok_or_else(|| format!("found {text:?}, expected a number above 0"))
+}
+
+fn confidence(text: &str) -> Result<f64, String> {
+    let level = text
+        .parse()
+        .ok()
+        .filter(|level: &f64| *level > 0.5 && *level < 1.0);
+    level.ok_or_else(|| {
+        format!("found {text:?}, expected a level above 0.5 and below 1, such as 0.95")
+    })
 }
 
 /// The type of the sums of squares.

@@ -6,6 +6,7 @@ mod analyse;
 mod command_line;
 mod console;
 mod exit_code;
+mod follow_up;
 mod interrupt;
 mod render;
 mod replicate;

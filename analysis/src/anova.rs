@@ -143,7 +143,7 @@ impl Stratum<'_> {
         let is_noise = ss_effect <= self.model.zero;
         let ss_effect = if is_noise { 0.0 } else { ss_effect };
         let mut row = EffectRow::new(
-            self.name(&term.holds),
+            effect_name(self.model.cells, &term.holds, &self.held),
             [
                 term.directions.ncols() * self.n_contrasts,
                 self.df_error * self.n_contrasts,
@@ -179,19 +179,6 @@ impl Stratum<'_> {
             row.ss_effect + own + ss_subjects + ss_subjects / df_subjects as f64
         };
         (total > 0.0).then(|| ((row.ss_effect - df * mse) / total).max(0.0))
-    }
-
-    fn name(&self, term: &[bool]) -> String {
-        let cells = self.model.cells;
-        let held = |factors: &[Factor], held: &[bool]| -> Vec<String> {
-            (factors.iter().zip(held))
-                .filter(|(_, is_held)| **is_held)
-                .map(|(factor, _)| factor.name.clone())
-                .collect()
-        };
-        let mut names = held(&cells.between, term);
-        names.extend(held(&cells.within, &self.held));
-        names.join(":")
     }
 
     fn add_sphericity(&self, row: &mut EffectRow, warnings: &mut Vec<String>) {
@@ -263,6 +250,19 @@ impl Stratum<'_> {
         (row.p_gg, row.p_hf, row.p_hf_classic) = (row.p, row.p, row.p);
         (row.p_cm, row.p_lb) = (row.p, row.p);
     }
+}
+
+/// The factors that an effect holds, joined by `:`, between factors first.
+pub(crate) fn effect_name(cells: &CellMatrix, between: &[bool], within: &[bool]) -> String {
+    let held = |factors: &[Factor], held: &[bool]| -> Vec<String> {
+        (factors.iter().zip(held))
+            .filter(|(_, is_held)| **is_held)
+            .map(|(factor, _)| factor.name.clone())
+            .collect()
+    };
+    let mut names = held(&cells.between, between);
+    names.extend(held(&cells.within, within));
+    names.join(":")
 }
 
 /// F, p and partial eta squared.

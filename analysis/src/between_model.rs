@@ -24,6 +24,8 @@ fn adjusts(kind: SumsOfSquares, term: &[bool], other: &[bool]) -> bool {
 pub(crate) struct BetweenTerm {
     pub(crate) holds: Vec<bool>,
     pub(crate) directions: DMatrix<f64>,
+    /// The directions of the terms that it is adjusted for.
+    others: DMatrix<f64>,
 }
 
 /// All terms of the between factors, the constant first.
@@ -48,9 +50,11 @@ impl BetweenModel {
                 let own = columns(term);
                 let df = own.ncols();
                 all.push(own);
+                let (others, directions) = directions(&all, df);
                 BetweenTerm {
                     holds: term.clone(),
-                    directions: last_directions(&all, df),
+                    directions,
+                    others,
                 }
             })
             .collect();
@@ -61,6 +65,18 @@ impl BetweenModel {
     /// sum of squares.
     pub(crate) fn explained(&self, term: &BetweenTerm, means: &DMatrix<f64>) -> DMatrix<f64> {
         term.directions.tr_mul(&weighted(means, &self.root_sizes))
+    }
+
+    /// What the terms that `term` is adjusted for explain of group means (groups × contrasts), again as group
+    /// means.
+    pub(crate) fn fitted_by_others(
+        &self,
+        term: &BetweenTerm,
+        means: &DMatrix<f64>,
+    ) -> DMatrix<f64> {
+        let inverse: Vec<f64> = self.root_sizes.iter().map(|root| root.recip()).collect();
+        let along = term.others.tr_mul(&weighted(means, &self.root_sizes));
+        weighted(&(&term.others * along), &inverse)
     }
 }
 
@@ -77,8 +93,8 @@ fn weighted(rows: &DMatrix<f64>, weights: &[f64]) -> DMatrix<f64> {
     weighted
 }
 
-/// The last `df` of the orthonormal directions that the columns of `blocks` span in their order.
-fn last_directions(blocks: &[DMatrix<f64>], df: usize) -> DMatrix<f64> {
+/// Orthonormal directions that the columns of `blocks` span in their order: all but the last `df`, and those.
+fn directions(blocks: &[DMatrix<f64>], df: usize) -> (DMatrix<f64>, DMatrix<f64>) {
     let n_columns = blocks.iter().map(DMatrix::ncols).sum();
     let mut design = DMatrix::zeros(blocks[0].nrows(), n_columns);
     let mut start = 0;
@@ -86,6 +102,10 @@ fn last_directions(blocks: &[DMatrix<f64>], df: usize) -> DMatrix<f64> {
         design.columns_mut(start, block.ncols()).copy_from(block);
         start += block.ncols();
     }
-    let directions = design.qr().q();
-    directions.columns(n_columns - df, df).into_owned()
+    let all = design.qr().q();
+    let first = n_columns - df;
+    (
+        all.columns(0, first).into_owned(),
+        all.columns(first, df).into_owned(),
+    )
 }

@@ -6,9 +6,9 @@
 //!
 //! Not here: contrasts and sums of squares (`anova`).
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use protocols::{InputError, Missing};
 
 use crate::Observations;
@@ -39,6 +39,8 @@ pub struct CellMatrix {
     pub dropped_subjects: Vec<String>,
     /// How many cells of these subjects were rated more than once, and averaged.
     pub n_averaged_cells: usize,
+    /// The file or folder that errors name.
+    pub source: PathBuf,
     /// What the reader of a result must know.
     pub warnings: Vec<String>,
 }
@@ -74,6 +76,7 @@ impl CellMatrix {
             scores: DMatrix::from_row_slice(subjects.len(), coded.n_cells, &means),
             groups: kept_groups,
             n_averaged_cells: n_averaged,
+            source: observations.source().to_owned(),
             warnings: warnings(&dropped_subjects, n_averaged),
             between: coded.between,
             within: coded.within,
@@ -117,6 +120,20 @@ impl CellMatrix {
             sizes[group] += 1;
         }
         sizes
+    }
+
+    /// The standard deviation, within groups, of the subjects' sums of cells by `weights`.
+    pub(crate) fn sd_within_groups(&self, weights: &DVector<f64>) -> f64 {
+        let scores = &self.scores * weights;
+        let (sizes, mut means) = (self.group_sizes(), vec![0.0; self.n_groups()]);
+        for (score, &group) in scores.iter().zip(&self.groups) {
+            means[group] += score / sizes[group] as f64;
+        }
+        let squares = scores.iter().zip(&self.groups);
+        let ss: f64 = squares
+            .map(|(score, &group)| (score - means[group]).powi(2))
+            .sum();
+        (ss / (self.subjects.len() - sizes.len()) as f64).sqrt()
     }
 
     /// The levels of cell `cell`, one for each within factor.

@@ -1,129 +1,20 @@
 //! The analysis of variance against the numbers of R (afex, car) and own R code; see reference/README.md.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
-use std::fs;
-use std::path::{Path, PathBuf};
+#[path = "reference/asymptote.rs"]
+mod asymptote;
+#[path = "reference/case.rs"]
+mod case;
+#[path = "reference/distribution_free.rs"]
+mod distribution_free;
+#[path = "reference/follow_ups.rs"]
+mod follow_ups;
 
-use analysis::{
-    AnalysisError, AnovaTable, CellMatrix, Design, EffectRow, anova_of_table, cell_summaries,
-    read_observations,
-};
-use protocols::{Missing, SumsOfSquares};
+use analysis::{AnovaTable, EffectRow, anova_of_table, cell_summaries};
+use protocols::SumsOfSquares;
 use serde_json::Value;
 
-fn own_folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference")
-}
-
-/// One data set: its table, and what is expected of it.
-struct Case {
-    table: PathBuf,
-    expected: Value,
-}
-
-impl Case {
-    fn id(&self) -> &str {
-        self.expected["id"].as_str().unwrap()
-    }
-
-    fn design(&self) -> Design {
-        let design = &self.expected["design"];
-        let names = |key: &str| -> Vec<String> {
-            let names = design[key].as_array().unwrap();
-            names
-                .iter()
-                .map(|name| name.as_str().unwrap().to_owned())
-                .collect()
-        };
-        Design {
-            subject: design["subject"].as_str().unwrap().to_owned(),
-            rating: design["dv"].as_str().unwrap().to_owned(),
-            within: names("within"),
-            between: names("between"),
-            observed: names("observed"),
-            sums_of_squares: SumsOfSquares::TypeThree,
-            missing: Missing::Drop,
-        }
-    }
-
-    fn analyse(&self) -> Result<AnovaTable, AnalysisError> {
-        anova_of_table(&self.table, &self.design())
-    }
-
-    /// Expected rows, without the intercept; none where there is no such analysis.
-    fn rows(&self, analysis: &str) -> Vec<&Value> {
-        let rows = self.expected[analysis]["ref"].as_array();
-        rows.into_iter()
-            .flatten()
-            .filter(|row| row["effect"] != "(Intercept)")
-            .collect()
-    }
-
-    /// How far a value may be off, relative: an offset of 1e7 costs the data themselves digits.
-    fn tolerance(&self) -> f64 {
-        if self.id() == "edge_offset_1e7" {
-            1e-7
-        } else {
-            1e-9
-        }
-    }
-}
-
-fn cases(expected_folder: &Path, table_folder: &Path) -> Vec<Case> {
-    let mut paths: Vec<PathBuf> = fs::read_dir(expected_folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| {
-            path.extension()
-                .is_some_and(|extension| extension == "json")
-        })
-        .collect();
-    paths.sort();
-    let case = |path: &PathBuf| Case {
-        table: table_folder.join(path.with_extension("csv").file_name().unwrap()),
-        expected: serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap(),
-    };
-    paths.iter().map(case).collect()
-}
-
-fn own_cases() -> Vec<Case> {
-    let cases = cases(&own_folder(), &own_folder());
-    assert_eq!(cases.len(), 32, "the reference sets of this project");
-    cases
-}
-
-fn is_refused(case: &Case) -> bool {
-    case.expected["expect"] == "error"
-}
-
-/// A number, or `None` for what is null, absent or NaN.
-fn number(value: &Value) -> Option<f64> {
-    value.as_f64()
-}
-
-fn assert_near(what: &str, found: Option<f64>, expected: Option<f64>, tolerance: f64) {
-    match (found, expected) {
-        (None, None) => {}
-        (Some(found), Some(expected)) => {
-            let error = (found - expected).abs() / expected.abs().max(1e-300);
-            assert!(
-                found == expected || error <= tolerance,
-                "{what}: found {found:e}, expected {expected:e}, off by {error:e}"
-            );
-        }
-        _ => panic!("{what}: found {found:?}, expected {expected:?}"),
-    }
-}
-
-/// p values below 1e-10 are compared by their logarithm.
-fn assert_p_near(what: &str, found: Option<f64>, expected: Option<f64>, tolerance: f64) {
-    let ln = |p: Option<f64>| p.map(f64::ln);
-    if expected.is_some_and(|p| p < 1e-10) {
-        assert_near(what, ln(found), ln(expected), tolerance);
-    } else {
-        assert_near(what, found, expected, tolerance);
-    }
-}
+use case::{Case, assert_near, assert_p_near, is_refused, number, own_cases, published_cases};
 
 fn assert_effect(case: &Case, found: &EffectRow, expected: &Value) {
     let what = |field: &str| format!("{}, {}, {field}", case.id(), found.effect);
@@ -289,17 +180,7 @@ fn our_simulated_sets_agree_with_r_to_1e_9() {
 
 #[test]
 fn published_sets_agree_with_r_to_1e_9() {
-    let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/reference/stats");
-    if !shared.is_dir() {
-        println!(
-            "skipped: the data sets of R packages (GPL) are not here: {}",
-            shared.display()
-        );
-        return;
-    }
-    let cases = cases(&shared.join("expected"), &shared.join("data"));
-    assert!(cases.len() >= 50, "{} sets", cases.len());
-    for case in cases {
+    for case in published_cases().into_iter().flatten() {
         assert_case(&case);
     }
 }
@@ -387,8 +268,7 @@ fn means_and_intervals_agree_with_afex() {
         let Some(rows) = case.expected["within_subject_ci95"]["table"].as_array() else {
             continue;
         };
-        let observations = read_observations(&case.table, &case.design()).unwrap();
-        let cells = CellMatrix::new(&observations).unwrap();
+        let cells = case.cells();
         let summaries = cell_summaries(&cells, 0.95);
         assert_eq!(summaries.len(), rows.len(), "{}", case.id());
         for summary in &summaries {
