@@ -1,6 +1,6 @@
 //! A pinhole camera.
 
-use crate::geometry::{Ray, Vector};
+use crate::geometry::{Pyramid, Ray, Vector};
 use crate::sampler::ScreenPoint;
 
 /// A camera: where it stands and its screen at a distance of 1 m.
@@ -28,6 +28,16 @@ impl Camera {
             right,
             up: right.cross(forward),
             half_height: libm::tan(0.5 * vertical_field_of_view_deg.to_radians()),
+        }
+    }
+
+    /// What the camera sees.
+    pub(crate) fn pyramid(&self, aspect: f64) -> Pyramid {
+        Pyramid {
+            apex: self.position,
+            forward: self.forward,
+            right: self.right * (aspect * self.half_height),
+            up: self.up * self.half_height,
         }
     }
 
