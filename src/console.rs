@@ -20,6 +20,13 @@ pub(crate) fn print_error(error: &anyhow::Error) {
     _ = writeln!(io::stderr().lock(), "error: {error:#}");
 }
 
+/// Prints the warnings of a scene on stderr.
+pub(crate) fn print_warnings(warnings: &[String]) {
+    for warning in warnings {
+        _ = writeln!(io::stderr().lock(), "warning: {warning}");
+    }
+}
+
 /// Where progress goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Progress {

@@ -27,15 +27,21 @@ pub(crate) fn make_set(
     progress: Progress,
 ) -> anyhow::Result<()> {
     let interrupt = Interrupt::listen()?;
+    let mut warnings = Vec::new();
     let summary = progress.of_rendering(|told| {
         let watch = Watch::new(told, interrupt.flag());
         Ok::<String, RendererError>(match &study.protocol.stimuli {
-            Stimuli::Rendered(_) => renderer::render_set(study, out, threads, &watch)?.to_string(),
+            Stimuli::Rendered(_) => {
+                let summary = renderer::render_set(study, out, threads, &watch)?;
+                warnings.clone_from(&summary.warnings);
+                summary.to_string()
+            }
             Stimuli::Pictures(pictures) => {
                 renderer::make_picture_set(study, pictures, out, &watch)?.to_string()
             }
         })
     })?;
+    console::print_warnings(&warnings);
     console::print(summary)?;
     Ok(())
 }
@@ -63,6 +69,7 @@ pub(crate) fn image(arguments: &ImageArguments, progress: Progress) -> anyhow::R
         let watch = Watch::new(told, interrupt.flag());
         renderer::render_image(&arguments.scene, &request, &arguments.out, &watch)
     })?;
+    console::print_warnings(&summary.warnings);
     console::print(summary)?;
     Ok(())
 }

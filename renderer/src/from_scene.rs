@@ -33,9 +33,14 @@ pub fn render_set(
     let plan = study.render_plan()?;
     let most = plan.most_rays();
     ImageRequest::of_study(study.rendering()?, most, most).check(&study.path)?;
-    on_threads(threads, out, || {
+    let summary = on_threads(threads, out, || {
         let sampler = scene.sampler(plan.quadrature, plan.size_px);
         render_set_of(&sampler, &scene_sha256, study, out, watch)
+    })?;
+    let warnings = scene.warnings().to_vec();
+    Ok(SetSummary {
+        warnings,
+        ..summary
     })
 }
 
@@ -57,8 +62,13 @@ pub fn render_image(
     Format::of(out)?;
     request.check(scene)?;
     let (scene, scene_sha256) = Scene::read_with_digest(scene)?;
-    on_threads(request.threads, out, || {
+    let summary = on_threads(request.threads, out, || {
         let sampler = scene.sampler(request.quadrature, request.size_px);
         render_image_of(&sampler, scene_sha256, request, out, watch)
+    })?;
+    let warnings = scene.warnings().to_vec();
+    Ok(ImageSummary {
+        warnings,
+        ..summary
     })
 }

@@ -34,6 +34,8 @@ pub struct ImageSummary {
     pub out_of_gamut_px: u32,
     /// What a reader of the image must know.
     pub remark: Option<&'static str>,
+    /// The warnings of the scene.
+    pub warnings: Vec<String>,
 }
 
 impl fmt::Display for ImageSummary {
@@ -128,6 +130,7 @@ pub fn render_image_of(
         rectangles,
         out_of_gamut_px: picture.out_of_gamut_px,
         remark: remark::of_driver(request.tree.driver),
+        warnings: Vec::new(),
     })
 }
 

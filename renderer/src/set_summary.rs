@@ -23,6 +23,8 @@ pub struct SetSummary {
     pub acuity: Option<AcuityLimits>,
     /// The remarks of the manifest.
     pub remarks: Vec<String>,
+    /// The warnings of the scene.
+    pub warnings: Vec<String>,
 }
 
 /// One image of the set, and what it would cost alone.

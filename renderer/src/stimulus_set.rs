@@ -101,6 +101,7 @@ pub fn render_set_of(
             .acuity
             .map(|acuity| AcuityLimits::new(acuity, study.protocol.viewing, plan.size_px)),
         remarks: manifest.remarks,
+        warnings: Vec::new(),
     })
 }
 

@@ -42,6 +42,7 @@ impl Hierarchy {
     }
 
     /// All shapes, by their indices.
+    #[cfg(test)]
     pub(crate) fn shapes(&self) -> &[Shape] {
         &self.shapes
     }

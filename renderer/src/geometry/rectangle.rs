@@ -33,22 +33,10 @@ impl Rectangle {
         one.joined(&Bounds::of_corners(self.corner + right, self.corner + top))
     }
 
-    /// The four corners, one after another round it.
-    pub(crate) fn corners(&self) -> [Vector; 4] {
-        let (right, top) = (self.u * self.width_m, self.v * self.height_m);
-        let corner = self.corner;
-        [corner, corner + right, corner + right + top, corner + top]
-    }
-
     #[inline]
     pub(crate) fn hit(&self, ray: &Ray, span: Span) -> Option<Hit> {
         let slope = ray.direction.dot(self.normal);
-        let rise_m = (self.corner - ray.origin).dot(self.normal);
-        // The plane is behind the ray; known without a division.
-        if rise_m * slope <= 0.0 {
-            return None;
-        }
-        let distance_m = rise_m / slope;
+        let distance_m = (self.corner - ray.origin).dot(self.normal) / slope;
         if !span.holds(distance_m) {
             return None;
         }
@@ -74,9 +62,10 @@ impl Rectangle {
         }
     }
 
-    /// The part of each edge that the place is along.
+    /// The part of edge u that the place is along, and the part of edge v that it is not: a picture stands
+    /// upright if v points up.
     pub(crate) fn texture_point(&self, place: Vector) -> [f64; 2] {
         let SurfacePoint { u_m, v_m } = self.surface_point(place);
-        [u_m / self.width_m, v_m / self.height_m]
+        [u_m / self.width_m, 1.0 - v_m / self.height_m]
     }
 }

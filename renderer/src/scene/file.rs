@@ -2,10 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::path::PathBuf;
 
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{self, Deserializer, MapAccess, SeqAccess, Visitor};
+
+use crate::import::{Filter, Wrap};
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -44,6 +47,8 @@ pub(super) struct SceneFile {
     pub(super) rectangle: Vec<RectangleTable>,
     #[serde(default)]
     pub(super) ground: Vec<GroundTable>,
+    #[serde(default)]
+    pub(super) mesh: Vec<MeshTable>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -106,7 +111,8 @@ pub(super) struct SphereLightTable {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct DiffuseTable {
-    pub(super) reflectance: SpectrumValue,
+    pub(super) reflectance: Option<SpectrumValue>,
+    pub(super) texture: Option<TextureTable>,
     pub(super) checker: Option<CheckerTable>,
     pub(super) stripes: Option<StripesTable>,
 }
@@ -114,7 +120,8 @@ pub(super) struct DiffuseTable {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct GlossyTable {
-    pub(super) reflectance: SpectrumValue,
+    pub(super) reflectance: Option<SpectrumValue>,
+    pub(super) texture: Option<TextureTable>,
     pub(super) checker: Option<CheckerTable>,
     pub(super) stripes: Option<StripesTable>,
     pub(super) highlight: f64,
@@ -136,6 +143,17 @@ pub(super) struct GlassTable {
     pub(super) refractive_index: f64,
     pub(super) highlight: Option<f64>,
     pub(super) exponent: Option<f64>,
+}
+
+/// A picture on a surface; the file is named from the folder of the scene.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TextureTable {
+    pub(super) file: PathBuf,
+    #[serde(default)]
+    pub(super) wrap: Wrap,
+    #[serde(default)]
+    pub(super) filter: Filter,
 }
 
 #[derive(Debug, Deserialize)]
@@ -227,6 +245,32 @@ pub(super) struct GroundTable {
     pub(super) name: Option<String>,
     pub(super) material: String,
     pub(super) height_m: f64,
+}
+
+/// A mesh of another program; the file is named from the folder of the scene.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MeshTable {
+    pub(super) name: Option<String>,
+    pub(super) file: PathBuf,
+    /// In place of the file's own materials.
+    pub(super) material: Option<String>,
+    #[serde(default)]
+    pub(super) position_m: [f64; 3],
+    pub(super) scale: Option<f64>,
+    #[serde(default)]
+    pub(super) rotation_deg: f64,
+    #[serde(default)]
+    pub(super) up: UpAxis,
+}
+
+/// The axis of a mesh file that points up.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum UpAxis {
+    #[default]
+    Y,
+    Z,
 }
 
 /// A spectrum by name, by control points, or by the colour that it is to have.

@@ -18,15 +18,19 @@ pub(super) const MAX_LIGHTS: usize = 32;
 /// The most samples along each side of an area light.
 const MAX_SAMPLES: u32 = 64;
 
-/// All lights: distant ones, points, rectangles, spheres.
-pub(super) fn lights(file: &Path, scene: &SceneFile) -> Result<Vec<Light>, InputError> {
-    let mut lights = Vec::new();
+/// All lights: distant ones, points, rectangles, spheres; and for each how to speak of it.
+pub(super) fn lights(
+    file: &Path,
+    scene: &SceneFile,
+) -> Result<(Vec<Light>, Vec<String>), InputError> {
+    let mut lights = Lights::default();
     add(file, "distant_light", &scene.distant_light, &mut lights)?;
     add(file, "point_light", &scene.point_light, &mut lights)?;
     add(file, "rectangle_light", &scene.rectangle_light, &mut lights)?;
     add(file, "sphere_light", &scene.sphere_light, &mut lights)?;
+    let (lights, names) = lights;
     if (1..=MAX_LIGHTS).contains(&lights.len()) {
-        Ok(lights)
+        Ok((lights, names))
     } else {
         let found = format!("{} lights", lights.len());
         let expected = format!(
@@ -36,11 +40,14 @@ pub(super) fn lights(file: &Path, scene: &SceneFile) -> Result<Vec<Light>, Input
     }
 }
 
+/// Lights with their labels.
+type Lights = (Vec<Light>, Vec<String>);
+
 fn add<T: LightTable>(
     file: &Path,
     kind: &str,
     tables: &[T],
-    lights: &mut Vec<Light>,
+    (lights, names): &mut Lights,
 ) -> Result<(), InputError> {
     for (number, light) in (1..).zip(tables) {
         let table = Table {
@@ -49,6 +56,7 @@ fn add<T: LightTable>(
             number: Some(number),
             name: light.name(),
         };
+        names.push(table.label());
         lights.push(Light {
             emission: emission(table, light.emittance())?,
             source: light.source(table)?,

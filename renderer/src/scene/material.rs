@@ -36,7 +36,6 @@ pub(crate) enum Body {
     /// Two reflectances that take turns.
     Patterned(Pattern),
     /// A picture on the surface.
-    #[expect(dead_code, reason = "no reader makes one yet")]
     Textured(TextureIndex),
 }
 

@@ -29,7 +29,9 @@
 //! | `[mirror.NAME]` | a mirror of a spectral `reflectance` |
 //! | `[glass.NAME]` | a clear solid of a `refractive_index`: mirrors by Fresnel's formula, passes the rest on by Snell's law; for closed shapes |
 //!
-//! `diffuse` and `glossy` may have `checker` or `stripes`: a second reflectance in every other square or
+//! `diffuse` and `glossy` may have a `texture` in place of the reflectance: `{ file = "wood.jpg", wrap = "repeat"
+//! (clamp, mirror), filter = "bilinear" (nearest) }`, PNG and JPEG as encoded sRGB, EXR as linear sRGB. It covers a
+//! rectangle, or the texture points of a mesh, or each metre of another surface. They may also have `checker` or `stripes`: a second reflectance in every other square or
 //! stripe along the surface. A reflectance is the name of an entry of `[reflectances]`, the name of a
 //! measured one (`colorchecker red`), control points `[[nm, value], …]` with straight lines between them
 //! and level ends, or `{ srgb = [r, g, b] }`, from 0 to 1: the smooth reflectance that has this colour under
@@ -37,6 +39,13 @@
 //!
 //! Surface coordinates are in metres: on a sphere along the equator and the meridian; on a cylinder or cone
 //! round the axis and up the side; on a box or rectangle along its edges; on the ground x and y.
+//!
+//! # Meshes
+//!
+//! `mesh = [{ file = "x.glb", material = "…", position_m = […], scale = 1, rotation_deg = 0, up = "y" }]` reads
+//! glTF 2.0, OBJ with MTL, or PLY from the folder of the scene; only `file` must be given. Without `material` the
+//! file's own are taken. The file's y is up unless `up = "z"`; the rotation is about the world's z. A mesh file
+//! is also a scene of its own. What it asks for in vain is among the warnings.
 //!
 //! # Simplifications
 //!
@@ -46,28 +55,38 @@
 //! counts for less than 1/1024 is not followed.
 
 pub(crate) mod camera;
+mod enclosure;
 mod file;
+mod imported;
 pub(crate) mod light;
 mod lights;
 pub(crate) mod material;
+mod mesh_scene;
+mod meshes;
 mod palette;
 mod reader;
 mod shapes;
 mod table;
 pub(crate) mod texture;
 
+use std::fs::File;
+use std::io::{BufReader, Read as _};
 use std::path::Path;
 
-use protocols::{Quadrature, ReadError, Sha256Digest};
+use protocols::{InputError, Quadrature, ReadError, Sha256Digest};
 
 use crate::RendererError;
 use crate::geometry::Hierarchy;
+use crate::import::Format;
 use crate::scene_sampler::SceneSampler;
 use crate::spectra::Spectrum;
 use camera::Camera;
 use light::{Ambient, Light};
 use material::Material;
 use texture::Texture;
+
+/// No scene file larger than this is read; meshes stand in files of their own.
+const LARGEST_SCENE_BYTES: u64 = 1 << 26;
 
 /// A scene that can be rendered: read whole, checked whole.
 #[derive(Clone, Debug)]
@@ -83,10 +102,13 @@ pub struct Scene {
     pub(crate) textures: Vec<Texture>,
     pub(crate) lights: Vec<Light>,
     pub(crate) ambient: Option<Ambient>,
+    warnings: Vec<String>,
+    /// The digests of the files that the scene file names.
+    imported: Vec<Sha256Digest>,
 }
 
 impl Scene {
-    /// Reads a scene file.
+    /// Reads a scene file: TOML, or a mesh file (`.gltf`, `.glb`, `.obj`, `.ply`) as a scene of its own.
     ///
     /// # Errors
     ///
@@ -96,12 +118,30 @@ impl Scene {
         Self::read_with_digest(path).map(|(scene, _)| scene)
     }
 
-    /// The scene of a file, and the digest of the file.
+    /// The scene of a file, and the digest of the file together with those that it names.
     pub(crate) fn read_with_digest(path: &Path) -> Result<(Self, Sha256Digest), RendererError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| ReadError::from_io(path, "a scene (TOML)", error))?;
+        if Format::known(path).is_some() {
+            let scene = mesh_scene::scene_from_mesh(path)?;
+            let digest = scene.digest_with(&[]);
+            return Ok((scene, digest));
+        }
+        let text = scene_text(path)?;
         let scene = Self::from_toml(path, &text)?;
-        Ok((scene, Sha256Digest::of(text.as_bytes())))
+        let digest = scene.digest_with(text.as_bytes());
+        Ok((scene, digest))
+    }
+
+    fn digest_with(&self, text: &[u8]) -> Sha256Digest {
+        let mut bytes = text.to_vec();
+        for digest in &self.imported {
+            bytes.extend(digest.as_str().bytes());
+        }
+        Sha256Digest::of(&bytes)
+    }
+
+    /// What the scene says that is not done, and what was assumed in its place: a line each.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
     }
 
     /// Reads the text of a scene; `file` is only named in errors.
@@ -120,4 +160,31 @@ impl Scene {
     pub fn sampler(&self, quadrature: Quadrature, size_px: [u32; 2]) -> SceneSampler<'_> {
         SceneSampler::new(self, quadrature, size_px)
     }
+}
+
+/// Whether a file is a scene rather than a protocol: a mesh by its ending, or TOML with a camera.
+pub fn is_scene(path: &Path) -> bool {
+    if Format::known(path).is_some() {
+        return true;
+    }
+    let table = scene_text(path)
+        .ok()
+        .and_then(|text| text.parse::<toml::Table>().ok());
+    table.is_some_and(|table| table.contains_key("camera"))
+}
+
+/// The text of a scene file, if it is not absurdly large.
+fn scene_text(path: &Path) -> Result<String, ReadError> {
+    let failed = |error| ReadError::from_io(path, "a scene (TOML)", error);
+    let file = File::open(path).map_err(failed)?;
+    let mut text = String::new();
+    let bounded = file.take(LARGEST_SCENE_BYTES + 1);
+    BufReader::new(bounded)
+        .read_to_string(&mut text)
+        .map_err(failed)?;
+    if text.len() as u64 <= LARGEST_SCENE_BYTES {
+        return Ok(text);
+    }
+    let expected = format!("a scene (TOML) of at most {LARGEST_SCENE_BYTES} bytes");
+    Err(InputError::new(path, "a larger file", expected).into())
 }

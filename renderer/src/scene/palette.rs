@@ -2,14 +2,19 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
-use protocols::InputError;
+use protocols::{InputError, ReadError};
 
-use super::file::{CheckerTable, SceneFile, SpectrumValue, StripeDirection, StripesTable};
+use super::file::{
+    CheckerTable, SceneFile, SpectrumValue, StripeDirection, StripesTable, TextureTable,
+};
 use super::material::{
-    Body, Highlight, Material, Mirror, Pattern, PatternLayout, ReflectanceIndex,
+    Body, Highlight, Material, Mirror, Pattern, PatternLayout, ReflectanceIndex, TextureIndex,
 };
 use super::table::Table;
+use super::texture::Texture;
+use crate::import::Picture;
 use crate::spectra::uplift::sigmoid_of_linear_srgb;
 use crate::spectra::{Spectrum, measured};
 use crate::srgb::srgb_decoded;
@@ -19,6 +24,7 @@ use crate::srgb::srgb_decoded;
 pub(super) struct Palette {
     pub(super) reflectances: Vec<Spectrum>,
     pub(super) materials: Vec<Material>,
+    pub(super) textures: Vec<Texture>,
     /// For each name the place in `materials`.
     material_of_name: BTreeMap<String, u16>,
 }
@@ -31,13 +37,18 @@ struct Known<'file> {
 
 impl Palette {
     /// Checks and collects the materials.
-    pub(super) fn new(file: &Path, scene: &SceneFile) -> Result<Self, InputError> {
+    pub(super) fn new(file: &Path, scene: &SceneFile) -> Result<Self, ReadError> {
         let known = Known::new(file, scene)?;
         let mut palette = Self::default();
         for (name, table) in &scene.diffuse {
             let place = known.table("diffuse", name);
-            let pattern = (table.checker.as_ref(), table.stripes.as_ref());
-            let body = palette.body(&known, place, &table.reflectance, pattern)?;
+            let fields = BodyFields {
+                reflectance: table.reflectance.as_ref(),
+                texture: table.texture.as_ref(),
+                checker: table.checker.as_ref(),
+                stripes: table.stripes.as_ref(),
+            };
+            let body = palette.body(&known, place, &fields)?;
             let material = Material {
                 body: Some(body),
                 ..Material::default()
@@ -46,8 +57,13 @@ impl Palette {
         }
         for (name, table) in &scene.glossy {
             let place = known.table("glossy", name);
-            let pattern = (table.checker.as_ref(), table.stripes.as_ref());
-            let body = palette.body(&known, place, &table.reflectance, pattern)?;
+            let fields = BodyFields {
+                reflectance: table.reflectance.as_ref(),
+                texture: table.texture.as_ref(),
+                checker: table.checker.as_ref(),
+                stripes: table.stripes.as_ref(),
+            };
+            let body = palette.body(&known, place, &fields)?;
             let refractive_index = table.refractive_index.map(|refractive_index| {
                 place.number_within("refractive_index", refractive_index, (1.0, 4.0))
             });
@@ -62,17 +78,26 @@ impl Palette {
             };
             palette.add(place, name, material)?;
         }
+        palette.add_mirrors_and_glass(&known, scene)?;
+        Ok(palette)
+    }
+
+    fn add_mirrors_and_glass(
+        &mut self,
+        known: &Known<'_>,
+        scene: &SceneFile,
+    ) -> Result<(), InputError> {
         for (name, table) in &scene.mirror {
             let place = known.table("mirror", name);
             let spectrum = known.reflectance(place, "reflectance", &table.reflectance)?;
             let peak = spectrum.peak();
-            let reflectance = palette.index(place, spectrum)?;
+            let reflectance = self.index(place, spectrum)?;
             let material = Material {
                 highlight: optional_highlight(place, table.highlight, table.exponent)?,
                 mirror: Some(Mirror::Metal { reflectance, peak }),
                 ..Material::default()
             };
-            palette.add(place, name, material)?;
+            self.add(place, name, material)?;
         }
         for (name, table) in &scene.glass {
             let place = known.table("glass", name);
@@ -83,9 +108,9 @@ impl Palette {
                 mirror: Some(Mirror::Glass { refractive_index }),
                 ..Material::default()
             };
-            palette.add(place, name, material)?;
+            self.add(place, name, material)?;
         }
-        Ok(palette)
+        Ok(())
     }
 
     /// The place of the material that an object names.
@@ -113,7 +138,8 @@ impl Palette {
         }
     }
 
-    fn index(
+    /// The place of a reflectance, which is added if it is new.
+    pub(super) fn index(
         &mut self,
         place: Table<'_>,
         spectrum: Spectrum,
@@ -129,19 +155,46 @@ impl Palette {
         ReflectanceIndex::try_from(index).map_err(|error| too_many(place, error))
     }
 
+    /// Adds a material that has no name in the scene file.
+    pub(super) fn add_unnamed(
+        &mut self,
+        place: Table<'_>,
+        material: Material,
+    ) -> Result<u16, InputError> {
+        let index = u16::try_from(self.materials.len()).map_err(|error| too_many(place, error))?;
+        self.materials.push(material);
+        Ok(index)
+    }
+
+    /// Adds a texture.
+    pub(super) fn add_texture(
+        &mut self,
+        place: Table<'_>,
+        texture: Texture,
+    ) -> Result<Body, InputError> {
+        let index = TextureIndex::try_from(self.textures.len());
+        let index = index.map_err(|error| too_many(place, error))?;
+        self.textures.push(texture);
+        Ok(Body::Textured(index))
+    }
+
     fn body(
         &mut self,
         known: &Known<'_>,
         place: Table<'_>,
-        reflectance: &SpectrumValue,
-        pattern: (Option<&CheckerTable>, Option<&StripesTable>),
-    ) -> Result<Body, InputError> {
-        let (layout, field, other) = match pattern {
-            (None, None) => {
-                let spectrum = known.reflectance(place, "reflectance", reflectance)?;
-                let reflectance = self.index(place, spectrum)?;
-                return Ok(Body::Plain(reflectance));
-            }
+        fields: &BodyFields<'_>,
+    ) -> Result<Body, ReadError> {
+        let Some(reflectance) = fields.reflectance else {
+            return self.textured_body(known.file, place, fields);
+        };
+        if fields.texture.is_some() {
+            let found = "a texture beside a reflectance";
+            return Err(place.error("texture", found, "one of the two").into());
+        }
+        let spectrum = known.reflectance(place, "reflectance", reflectance)?;
+        let reflectance = self.index(place, spectrum)?;
+        let (layout, field, other) = match (fields.checker, fields.stripes) {
+            (None, None) => return Ok(Body::Plain(reflectance)),
             (Some(checker), None) => {
                 let size_m = place.length_m("checker.size_m", checker.size_m)?;
                 let layout = PatternLayout::Checker { size_m };
@@ -157,12 +210,10 @@ impl Palette {
             }
             (Some(_), Some(_)) => {
                 let found = "stripes beside a checker";
-                return Err(place.error("stripes", found, "one of the two"));
+                return Err(place.error("stripes", found, "one of the two").into());
             }
         };
-        let spectrum = known.reflectance(place, "reflectance", reflectance)?;
         let other = known.reflectance(place, field, other)?;
-        let reflectance = self.index(place, spectrum)?;
         let other = self.index(place, other)?;
         Ok(Body::Patterned(Pattern {
             layout,
@@ -170,6 +221,39 @@ impl Palette {
             other,
         }))
     }
+
+    fn textured_body(
+        &mut self,
+        file: &Path,
+        place: Table<'_>,
+        fields: &BodyFields<'_>,
+    ) -> Result<Body, ReadError> {
+        let Some(texture) = fields.texture else {
+            let expected = "a reflectance or a texture";
+            return Err(place.error("reflectance", "nothing", expected).into());
+        };
+        if fields.checker.is_some() || fields.stripes.is_some() {
+            let found = "a texture beside a checker or stripes";
+            return Err(place.error("texture", found, "one of them").into());
+        }
+        let path = file.parent().unwrap_or(Path::new("")).join(&texture.file);
+        let picture = Picture::read(&path, &place.label())?;
+        let texture = Texture {
+            picture: Arc::new(picture),
+            factor: [1.0; 3],
+            wrap: [texture.wrap; 2],
+            filter: texture.filter,
+        };
+        Ok(self.add_texture(place, texture)?)
+    }
+}
+
+/// The fields of a table that say what its body is.
+struct BodyFields<'file> {
+    reflectance: Option<&'file SpectrumValue>,
+    texture: Option<&'file TextureTable>,
+    checker: Option<&'file CheckerTable>,
+    stripes: Option<&'file StripesTable>,
 }
 
 impl<'file> Known<'file> {

@@ -2,30 +2,74 @@
 
 use std::path::Path;
 
-use protocols::InputError;
+use protocols::{InputError, ReadError, Sha256Digest};
 
 use super::Scene;
 use super::camera::Camera;
+use super::enclosure;
 use super::file::{AmbientTable, CameraTable, SceneFile};
-use super::light::{Ambient, Source};
+use super::light::{Ambient, Light, Source};
 use super::lights::{emission, lights};
 use super::material::Material;
+use super::meshes::add_meshes;
 use super::palette::Palette;
-use super::shapes::shapes;
+use super::shapes::Objects;
 use super::table::Table;
 use crate::geometry::Hierarchy;
+use crate::import::Import;
 
 /// Reads the text of a scene file.
-pub(super) fn scene_from_toml(file: &Path, text: &str) -> Result<Scene, InputError> {
+pub(super) fn scene_from_toml(file: &Path, text: &str) -> Result<Scene, ReadError> {
     let scene: SceneFile = toml::from_str(text).map_err(|error| {
         let found = error.to_string();
         InputError::new(file, found.trim_end(), "a scene (TOML)")
             .remedy("compare it with stimuli/scenes/opponent-solids.toml")
     })?;
-    let palette = Palette::new(file, &scene)?;
-    let (mut shapes, mut material_of_shape) = shapes(file, &scene, &palette)?;
+    let mut palette = Palette::new(file, &scene)?;
+    let mut objects = Objects::new(file, &scene, &palette)?;
+    let imports = add_meshes(file, &scene, &mut palette, &mut objects)?;
     let ambient = scene.ambient.as_ref().map(|table| ambient(file, table));
-    let lights = lights(file, &scene)?;
+    let (lights, light_names) = lights(file, &scene)?;
+    Ok(assemble(Parts {
+        camera: camera(file, &scene.camera)?,
+        palette,
+        objects,
+        lights,
+        light_names,
+        ambient: ambient.transpose()?,
+        imports,
+    }))
+}
+
+/// All that a scene is made of.
+pub(super) struct Parts {
+    pub(super) camera: Camera,
+    pub(super) palette: Palette,
+    pub(super) objects: Objects,
+    pub(super) lights: Vec<Light>,
+    /// For each light how to speak of it.
+    pub(super) light_names: Vec<String>,
+    pub(super) ambient: Option<Ambient>,
+    /// What is left of the imports: their warnings and digests.
+    pub(super) imports: Vec<Import>,
+}
+
+/// Puts a scene together, with the shapes of its area lights.
+pub(super) fn assemble(parts: Parts) -> Scene {
+    let Parts {
+        camera,
+        palette,
+        objects,
+        lights,
+        light_names,
+        ambient,
+        imports,
+    } = parts;
+    let Objects {
+        mut shapes,
+        materials: mut material_of_shape,
+        labels,
+    } = objects;
     let mut materials = palette.materials;
     for (number, light) in (0..).zip(&lights) {
         if let Source::Area(area) = &light.source {
@@ -38,16 +82,31 @@ pub(super) fn scene_from_toml(file: &Path, text: &str) -> Result<Scene, InputErr
             material_of_shape.push(material);
         }
     }
-    Ok(Scene {
-        camera: camera(file, &scene.camera)?,
+    let mut scene = Scene {
+        camera,
         shapes: Hierarchy::over(shapes),
         material_of_shape,
         materials,
         reflectances: palette.reflectances,
-        textures: Vec::new(),
+        textures: palette.textures,
         lights,
-        ambient: ambient.transpose()?,
-    })
+        ambient,
+        warnings: Vec::new(),
+        imported: Vec::new(),
+    };
+    let pictures = scene
+        .textures
+        .iter()
+        .map(|texture| texture.picture.sha256.clone());
+    let pictures: Vec<Sha256Digest> = pictures.collect();
+    for import in imports {
+        scene.warnings.extend(import.warnings);
+        scene.imported.extend(import.digests);
+    }
+    scene.imported.extend(pictures);
+    let shut = enclosure::warnings(&scene, &labels, &light_names);
+    scene.warnings.extend(shut);
+    scene
 }
 
 fn only<'file>(file: &'file Path, kind: &'file str) -> Table<'file> {

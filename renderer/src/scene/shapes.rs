@@ -13,61 +13,70 @@ use super::palette::Palette;
 use super::table::Table;
 use crate::geometry::{Cone, Cuboid, Cylinder, Disc, Ground, Rectangle, Shape, Sphere, Vector};
 
-/// All shapes, and for each the place of its material.
-pub(super) fn shapes(
-    file: &Path,
-    scene: &SceneFile,
-    palette: &Palette,
-) -> Result<(Vec<Shape>, Vec<u16>), InputError> {
-    let mut objects = Objects {
-        file,
-        palette,
-        shapes: Vec::new(),
-        materials: Vec::new(),
-    };
-    objects.add("sphere", &scene.sphere)?;
-    objects.add("box", &scene.cuboid)?;
-    objects.add("cylinder", &scene.cylinder)?;
-    objects.add("cone", &scene.cone)?;
-    objects.add("disc", &scene.disc)?;
-    objects.add("rectangle", &scene.rectangle)?;
-    objects.add("ground", &scene.ground)?;
-    if objects.shapes.is_empty() {
-        return Err(InputError::new(
-            file,
-            "no object",
-            "at least one sphere, box, cylinder, cone, disc, rectangle or ground",
-        ));
+/// The shapes of a scene.
+#[derive(Debug, Default)]
+pub(super) struct Objects {
+    pub(super) shapes: Vec<Shape>,
+    /// For each shape the place of its material.
+    pub(super) materials: Vec<u16>,
+    /// For each shape how to speak of it.
+    pub(super) labels: Vec<String>,
+}
+
+impl Objects {
+    /// All shapes but meshes.
+    pub(super) fn new(
+        file: &Path,
+        scene: &SceneFile,
+        palette: &Palette,
+    ) -> Result<Self, InputError> {
+        let mut objects = Self::default();
+        objects.add_tables((file, palette), "sphere", &scene.sphere)?;
+        objects.add_tables((file, palette), "box", &scene.cuboid)?;
+        objects.add_tables((file, palette), "cylinder", &scene.cylinder)?;
+        objects.add_tables((file, palette), "cone", &scene.cone)?;
+        objects.add_tables((file, palette), "disc", &scene.disc)?;
+        objects.add_tables((file, palette), "rectangle", &scene.rectangle)?;
+        objects.add_tables((file, palette), "ground", &scene.ground)?;
+        if objects.shapes.is_empty() && scene.mesh.is_empty() {
+            return Err(InputError::new(
+                file,
+                "no object",
+                "at least one sphere, box, cylinder, cone, disc, rectangle, ground or mesh",
+            ));
+        }
+        Ok(objects)
     }
-    Ok((objects.shapes, objects.materials))
-}
 
-struct Objects<'file> {
-    file: &'file Path,
-    palette: &'file Palette,
-    shapes: Vec<Shape>,
-    materials: Vec<u16>,
-}
+    /// Adds a shape.
+    pub(super) fn add(&mut self, shape: Shape, material: u16, label: String) {
+        self.shapes.push(shape);
+        self.materials.push(material);
+        self.labels.push(label);
+    }
 
-impl Objects<'_> {
-    fn add<T: ObjectTable>(&mut self, kind: &str, tables: &[T]) -> Result<(), InputError> {
+    fn add_tables<T: ObjectTable>(
+        &mut self,
+        (file, palette): (&Path, &Palette),
+        kind: &str,
+        tables: &[T],
+    ) -> Result<(), InputError> {
         for (number, object) in (1..).zip(tables) {
             let table = Table {
-                file: self.file,
+                file,
                 kind,
                 number: Some(number),
                 name: object.name(),
             };
-            let material = self.palette.material(table, object.material())?;
+            let material = palette.material(table, object.material())?;
             let shape = object.shape(table)?;
-            let mirror = self.palette.materials[usize::from(material)].mirror;
+            let mirror = palette.materials[usize::from(material)].mirror;
             if matches!(mirror, Some(Mirror::Glass { .. })) && !shape.is_closed() {
                 let found = format!("\"{}\", which is glass", object.material());
                 let expected = "another material: only a closed shape can be of glass";
                 return Err(table.error("material", found, expected));
             }
-            self.shapes.push(shape);
-            self.materials.push(material);
+            self.add(shape, material, table.label());
         }
         Ok(())
     }

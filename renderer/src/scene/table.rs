@@ -21,6 +21,13 @@ pub(super) struct Table<'file> {
 }
 
 impl Table<'_> {
+    /// The kind, the number and the name, as far as there are any.
+    pub(super) fn label(&self) -> String {
+        let number = self.number.map_or(String::new(), |n| format!(" {n}"));
+        let name = self.name.map_or(String::new(), |n| format!(" \"{n}\""));
+        format!("{}{number}{name}", self.kind)
+    }
+
     /// The error that a field of this table holds what was `found`.
     pub(super) fn error(
         &self,
@@ -28,9 +35,7 @@ impl Table<'_> {
         found: impl Into<String>,
         expected: impl Into<String>,
     ) -> InputError {
-        let number = self.number.map_or(String::new(), |n| format!(" {n}"));
-        let name = self.name.map_or(String::new(), |n| format!(" \"{n}\""));
-        let place = format!("{}{number}{name}, field {field}", self.kind);
+        let place = format!("{}, field {field}", self.label());
         InputError::new(self.file, found, expected).at(place)
     }
 

@@ -14,6 +14,7 @@ pub(crate) mod sigmoid;
 pub(crate) mod spectrum;
 mod table;
 pub(crate) mod uplift;
+pub(crate) mod uplift_table;
 
 pub(crate) use emission::Emission;
 pub(crate) use quadrature::WavelengthRule;

@@ -22,7 +22,7 @@ const MOST_ITERATIONS: [u32; 2] = [8, 60];
 /// A colour error in CIELAB units that nobody sees.
 const GOOD_ENOUGH: f64 = 1e-3;
 /// Linear RGB is held to this, off the faces of the cube, where the coefficients would have no end.
-const WITHIN: [f64; 2] = [3e-6, 1.0 - 2e-3];
+pub(super) const WITHIN: [f64; 2] = [3e-6, 1.0 - 2e-3];
 
 static FITTER: LazyLock<Fitter> = LazyLock::new(Fitter::new);
 
@@ -36,8 +36,33 @@ pub(crate) fn sigmoid_of_linear_srgb(rgb: [f64; 3]) -> Sigmoid {
     Sigmoid::rounded(FITTER.coefficients(rgb))
 }
 
+/// The reflectances of colours that follow each other closely, each fitted from the one before.
+///
+/// The middle one is fitted first, then those towards both ends.
+pub(super) fn sigmoids_along(colours: &[[f64; 3]]) -> Vec<Sigmoid> {
+    let mut fitted = vec![Sigmoid::default(); colours.len()];
+    let middle = colours.len() / 2;
+    let start = FITTER.coefficients(colours[middle]);
+    let mut walk = |places: &mut dyn Iterator<Item = usize>| {
+        let mut coefficients = start;
+        for place in places {
+            let rgb = within_margin(colours[place]);
+            let [r, g, b] = rgb;
+            coefficients = if r == g && g == b {
+                [0.0, 0.0, grey_x(r)]
+            } else {
+                FITTER.refined(coefficients, rgb, MOST_ITERATIONS[1])
+            };
+            fitted[place] = Sigmoid::rounded(coefficients);
+        }
+    };
+    walk(&mut (middle..colours.len()));
+    walk(&mut (0..middle).rev());
+    fitted
+}
+
 /// A value from 0 to 1; what is not a number is 0.
-fn held_to_unit(primary: f64) -> f64 {
+pub(super) fn held_to_unit(primary: f64) -> f64 {
     if primary.is_nan() {
         0.0
     } else {
