@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use analysis::PrintedF;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use protocols::{
-    FollowUpPlan, Missing, Observer, Quadrature, RayCount, RefinementDriver, Study, SubjectId,
-    SumsOfSquares,
+    Channel, FollowUpPlan, Missing, Observer, Quadrature, RayCount, RefinementDriver, Study,
+    SubjectId, SumsOfSquares,
 };
 
 use crate::follow_up;
@@ -105,9 +105,9 @@ pub(crate) struct ImageArguments {
     /// Rays for the achromatic channel, such as 50K.
     #[arg(long)]
     pub(crate) rays_a: RayCount,
-    /// Rays for the chromatic channels, such as 140K.
+    /// Rays for the chromatic channels, such as 140K [default: as many as for A]
     #[arg(long)]
-    pub(crate) rays_c1c2: RayCount,
+    pub(crate) rays_c1c2: Option<RayCount>,
     /// Width and height in pixels.
     #[arg(long, default_value = "320x320", value_parser = size_px)]
     pub(crate) size: [u32; 2],
@@ -132,6 +132,22 @@ pub(crate) struct ImageArguments {
     /// The same for C2 (r of section 3.3).
     #[arg(long)]
     pub(crate) depth_c2: Option<u32>,
+    /// End where the mean of every region is known within this, with 95% confidence; the rays are the most to take.
+    #[arg(long, value_name = "K/255", value_parser = tolerance_steps)]
+    pub(crate) until_within: Option<u8>,
+    /// The channel whose means are to be known: A, C1 or C2.
+    #[arg(long, default_value = "A", value_name = "CHANNEL", value_parser = channel, requires = "until_within")]
+    pub(crate) confidence_channel: Channel,
+    /// Refine no channel beyond what can be seen: by [acuity] and [viewing] of PROTOCOL, or if none is named by
+    /// Mullen's cutoffs (34 and 11 cycles/degree) at 0.019 degrees a pixel.
+    #[arg(long, value_name = "PROTOCOL", num_args = 0..=1, default_missing_value = "paper", value_parser = eye)]
+    pub(crate) acuity: Option<Eye>,
+    /// Make the image without these limits too, to FILE, and print rays, shadings, time and visible difference.
+    #[arg(long, value_name = "FILE", requires = "acuity")]
+    pub(crate) compare: Option<PathBuf>,
+    /// Write the samples in each pixel and the depth of the tree, per channel: .png to look at, .exr as numbers. May be repeated.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) samples_map: Vec<PathBuf>,
     /// How many threads [default: one for each core]
     #[arg(long, value_parser = threads)]
     pub(crate) threads: Option<NonZeroUsize>,
@@ -344,6 +360,23 @@ pub(crate) struct ReplicateArguments {
     pub(crate) protocol: PathBuf,
 }
 
+/// Whose cutoffs and viewing geometry limit an image.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Eye {
+    /// Mullen's cutoffs (1985) where the paper's subjects sat.
+    Paper,
+    /// Those of a protocol.
+    OfProtocol(PathBuf),
+}
+
+#[expect(clippy::unnecessary_wraps, reason = "the form of a value parser")]
+fn eye(text: &str) -> Result<Eye, String> {
+    Ok(match text {
+        "paper" => Eye::Paper,
+        path => Eye::OfProtocol(path.into()),
+    })
+}
+
 fn size_px(text: &str) -> Result<[u32; 2], String> {
     let sides = text
         .split_once('x')
@@ -363,6 +396,21 @@ fn driver(text: &str) -> Result<RefinementDriver, String> {
         "AC1C2" => Ok(RefinementDriver::All),
         _ => Err(format!("found the driver {text:?}, expected A or AC1C2")),
     }
+}
+
+fn tolerance_steps(text: &str) -> Result<u8, String> {
+    let steps = text
+        .strip_suffix("/255")
+        .and_then(|steps| steps.parse().ok());
+    steps.filter(|&steps| steps > 0).ok_or_else(|| {
+        format!("found {text:?}, expected K/255 with a whole K from 1 to 255, such as 1/255")
+    })
+}
+
+fn channel(text: &str) -> Result<Channel, String> {
+    let mut channels = Channel::ALL.into_iter();
+    let found = channels.find(|channel| channel.to_string() == text);
+    found.ok_or_else(|| format!("found the channel {text:?}, expected A, C1 or C2"))
 }
 
 fn threads(text: &str) -> Result<NonZeroUsize, String> {

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use analysis::AnalysisError;
 use experiment::ExperimentError;
-use protocols::ReadError;
+use protocols::{InputError, ReadError};
 use renderer::RendererError;
 
 /// What a shell gives for a program that Ctrl-C ended: 128 + SIGINT.
@@ -22,7 +22,8 @@ pub(crate) fn of(error: &anyhow::Error) -> ExitCode {
         || error
             .downcast_ref::<AnalysisError>()
             .is_some_and(AnalysisError::is_input)
-        || matches!(error.downcast_ref(), Some(ReadError::Input(_)));
+        || matches!(error.downcast_ref(), Some(ReadError::Input(_)))
+        || error.is::<InputError>();
     let is_interruption = error
         .downcast_ref::<RendererError>()
         .is_some_and(RendererError::is_interruption);

@@ -2,15 +2,19 @@
 //!
 //! Exit codes: 0 done, 1 failed, 2 the input or the command is wrong, 130 interrupted.
 
+mod acuity_comparison;
 mod analyse;
 mod command_line;
 mod console;
 mod exit_code;
 mod follow_up;
+mod image;
 mod interrupt;
+mod memory;
 mod render;
 mod replicate;
 mod sit;
+mod stopwatch;
 
 use std::process::ExitCode;
 
@@ -38,7 +42,7 @@ fn run(command: Command, progress: Progress) -> anyhow::Result<ExitCode> {
     match command {
         Command::Check(arguments) => return sit::check(&arguments),
         Command::Render(arguments) => render::set(&arguments, progress)?,
-        Command::Image(arguments) => render::image(&arguments, progress)?,
+        Command::Image(arguments) => image::image(&arguments, progress)?,
         Command::Figures(arguments) => render::figures(&arguments)?,
         Command::Run(arguments) => sit::run(&arguments)?,
         Command::Simulate(arguments) => sit::simulate(&arguments, progress)?,

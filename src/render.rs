@@ -1,12 +1,12 @@
-//! `acuity render`, `image` and `figures`: from a protocol or a scene to pictures.
+//! `acuity render` and `figures`: from a protocol to pictures.
 
 use std::num::NonZeroUsize;
 use std::path::Path;
 
-use protocols::{Stimuli, Study, TreePlan};
-use renderer::{ImageRequest, RendererError, Watch};
+use protocols::{Stimuli, Study};
+use renderer::{RendererError, Watch};
 
-use crate::command_line::{FiguresArguments, ImageArguments, RenderArguments};
+use crate::command_line::{FiguresArguments, RenderArguments};
 use crate::console::{self, Progress};
 use crate::interrupt::Interrupt;
 
@@ -42,34 +42,6 @@ pub(crate) fn make_set(
         })
     })?;
     console::print_warnings(&warnings);
-    console::print(summary)?;
-    Ok(())
-}
-
-pub(crate) fn image(arguments: &ImageArguments, progress: Progress) -> anyhow::Result<()> {
-    let request = ImageRequest {
-        rays_a: arguments.rays_a,
-        rays_c1c2: arguments.rays_c1c2,
-        stop_depths: protocols::PerChannel {
-            a: arguments.depth_a,
-            c1: arguments.depth_c1,
-            c2: arguments.depth_c2,
-        },
-        size_px: arguments.size,
-        seed: arguments.seed,
-        quadrature: arguments.quadrature,
-        tree: TreePlan {
-            min_depth: arguments.min_depth,
-            driver: arguments.driver,
-        },
-        threads: arguments.threads,
-    };
-    let interrupt = Interrupt::listen()?;
-    let summary = progress.of_rendering(|told| {
-        let watch = Watch::new(told, interrupt.flag());
-        renderer::render_image(&arguments.scene, &request, &arguments.out, &watch)
-    })?;
-    console::print_warnings(&summary.warnings);
     console::print(summary)?;
     Ok(())
 }

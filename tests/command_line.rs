@@ -9,7 +9,7 @@ use std::process::Output;
 use acuity::{PROTOCOL, acuity, stderr, text_of};
 
 /// Commands (P is the paper's protocol) that are wrong, and what the message must name.
-const WRONG_COMMANDS: [(&str, &str); 9] = [
+const WRONG_COMMANDS: [(&str, &str); 14] = [
     ("paint", "paint"),
     ("render", "PROTOCOL"),
     ("run P --subject Jane_Doe", "letters"),
@@ -22,6 +22,17 @@ const WRONG_COMMANDS: [(&str, &str); 9] = [
         "0x1",
     ),
     ("image s.toml --rays-a 1K --rays-c1c2 1K -o x.exr", "s.toml"),
+    ("image s.toml --rays-a 4294967296 -o x.exr", "4294967295"),
+    (
+        "image s.toml --rays-a 4294967295 -o x.exr",
+        "at most 1073741824 rays",
+    ),
+    ("image s.toml --rays-a 100 -o x.exr", "256 cells"),
+    (
+        "image s.toml --rays-a 1K --compare y.png -o x.exr",
+        "--acuity",
+    ),
+    ("image s.toml --rays-a 1K --acuity P -o x.exr", "[acuity]"),
 ];
 
 #[test]
@@ -133,5 +144,37 @@ fn the_program_says_that_a_stopped_channel_changes_a_tree_that_all_channels_driv
             is_remarked,
             "{driver}"
         );
+    }
+}
+
+/// 64 × 64 pixels of 0.019 degrees: sides of at most a pixel take 6 halvings each, 4096 cells; C1 and C2 need
+/// sides of at most 2.39 pixels, 5 halvings each.
+#[test]
+fn acuity_control_is_rendered_with_and_without_and_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/stimuli/scenes/opponent-solids.toml"
+    );
+    let command = "--rays-a 8K --size 64x64 --acuity --compare whole.png -o limited.png";
+    let mut arguments = vec!["image", scene];
+    arguments.extend(command.split(' '));
+    let output = acuity(folder.path(), &arguments);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let printed = text_of(&output.stdout);
+    let row = |name: &str| {
+        let mut lines = printed.lines();
+        let line = lines.rfind(|line| line.starts_with(name)).unwrap();
+        let words = line.rsplit(' ').filter(|word| !word.is_empty());
+        let mut words: Vec<String> = words.take(3).map(str::to_owned).collect();
+        words.reverse();
+        words
+    };
+    assert_eq!(row("rays"), ["4096", "8000", "48.8%"]);
+    assert_eq!(row("shadings of C1"), ["1024", "8000", "87.2%"]);
+    assert_eq!(row("all shadings"), ["6144", "24000", "74.4%"]);
+    assert!(printed.contains("JOD"));
+    for image in ["limited.png", "whole.png"] {
+        assert!(folder.path().join(image).exists());
     }
 }

@@ -42,7 +42,7 @@ pub use frame_log::{FrameLog, FrameRun};
 pub use note::{Note, Noted};
 pub use order::{Trial, trials};
 pub use picture::{First, Picture};
-pub use quality::{Quality, qualities};
+pub use quality::{Quality, qualities, visible_difference_jod};
 pub use ready::check_ready;
 pub use response::Response;
 pub use rules::Rules;

@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use colorvideovdp::{
     Color, Cvvdp, DisplayModel, Execution, Geometry, Image, Options, Photometry, Prediction,
 };
-use protocols::{InputError, StimulusId, Study};
+use protocols::{InputError, StimulusId, Study, Viewing};
 use rayon::prelude::*;
 
 use crate::{ExperimentError, ScreenImage, StimulusSet};
@@ -44,7 +44,9 @@ pub fn qualities(
     study: &Study,
     set: &StimulusSet,
 ) -> Result<BTreeMap<StimulusId, Quality>, ExperimentError> {
-    let metric = metric(study, set.size_px()).map_err(refused("size"))?;
+    let peak_cd_m2 = study.protocol.simulation.peak_luminance_cd_m2;
+    let metric =
+        metric(study.protocol.viewing, peak_cd_m2, set.size_px()).map_err(refused("size"))?;
     let stimuli = &study.protocol.stimuli;
     let judge = |(id, image): (&StimulusId, &ScreenImage)| {
         let reference = set.image(&stimuli.reference_of(id).unwrap_or_else(|| id.clone()))?;
@@ -91,11 +93,33 @@ fn ends(study: &Study, jods: &BTreeMap<StimulusId, f64>) -> Result<[f64; 2], Inp
     })
 }
 
-fn metric(study: &Study, size_px: [u32; 2]) -> colorvideovdp::Result<Cvvdp> {
-    let peak_cd_m2 = study.protocol.simulation.peak_luminance_cd_m2;
+/// How close an image looks to its reference, in just-objectionable differences; 10 is no visible difference.
+///
+/// The display is an sRGB monitor in the dark with this peak luminance.
+///
+/// # Errors
+///
+/// The images differ in size or are too small for the model.
+pub fn visible_difference_jod(
+    image: &ScreenImage,
+    reference: &ScreenImage,
+    viewing: Viewing,
+    peak_luminance_cd_m2: f64,
+) -> Result<f64, ExperimentError> {
+    let judged = metric(viewing, peak_luminance_cd_m2, reference.size_px).and_then(|metric| {
+        metric.predict_image(&coded_image(image)?, &coded_image(reference)?, Color::Srgb)
+    });
+    let prediction: Prediction = judged.map_err(|error| ExperimentError::Vision {
+        stimulus: "the image".to_owned(),
+        reason: error.to_string(),
+    })?;
+    Ok(f64::from(prediction.jod))
+}
+
+fn metric(viewing: Viewing, peak_cd_m2: f64, size_px: [u32; 2]) -> colorvideovdp::Result<Cvvdp> {
     let photometry = Photometry::new(peak_cd_m2, DISPLAY_CONTRAST, AMBIENT_LX, 0.0, 1.0)?;
     let size = size_px.map(|pixels| pixels as usize);
-    let geometry = Geometry::from_ppd(size, study.protocol.viewing.pixels_per_degree())?;
+    let geometry = Geometry::from_ppd(size, viewing.pixels_per_degree())?;
     let display = DisplayModel::new("monitor of the study", photometry, geometry, "sRGB");
     let options = Options::default().with_execution(Execution::SingleThread);
     Cvvdp::new(display?, options)

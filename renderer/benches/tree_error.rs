@@ -45,6 +45,7 @@ fn measure(scene: &Scene) {
         min_depth: 8,
         driver: RefinementDriver::A,
         stops: PerChannel::from_fn(|_| Reach::rays(140_000)),
+        until: None,
     };
     let tree = trace(&sampler, &plan, &|_, _| ());
     let truth = uniform(&sampler, Channel::A, [16 * SIZE_PX[0]; 2]);

@@ -64,6 +64,17 @@ impl Cell {
         half_to_the(self.depth())
     }
 
+    /// Which of all cells with this many halvings along x and y it lies in, row by row.
+    ///
+    /// It must have at least as many itself.
+    pub(crate) fn place_among(self, [along_x, along_y]: [u32; 2]) -> usize {
+        let ancestor = |number: u32, halvings: u32| {
+            let ancestor = number >> (number.ilog2() - halvings);
+            (ancestor ^ (1 << halvings)) as usize
+        };
+        (ancestor(self.y, along_y) << along_x) | ancestor(self.x, along_x)
+    }
+
     /// The two halves along an axis, the one nearer to 0 first.
     pub const fn halves(self, axis: Axis) -> [Self; 2] {
         let Self { x, y } = self;
@@ -90,21 +101,27 @@ impl Cell {
     /// The least depth at which no side of a cell is longer than this many pixels of the picture, whatever axes
     /// were preferred.
     pub fn depth_of_side(size_px: [u32; 2], longest_px: f64) -> u32 {
+        let [along_x, along_y] = Self::halvings_to_side(size_px, longest_px);
+        (along_x + along_y).min(Self::DEEPEST)
+    }
+
+    /// The halvings along x and along y that every cell of that depth has.
+    pub(crate) fn halvings_to_side(size_px: [u32; 2], longest_px: f64) -> [u32; 2] {
         let [mut width, mut height] = size_px.map(f64::from);
-        let mut depth = 0;
-        while depth < Self::DEEPEST && width.max(height) > longest_px {
+        let [mut along_x, mut along_y] = [0, 0];
+        while along_x + along_y < Self::DEEPEST && width.max(height) > longest_px {
             let cut = longer([width, height]);
             if cut != Some(Axis::Y) {
                 width *= 0.5;
-                depth += 1;
+                along_x += 1;
             }
             // Where either may come first, the longer side may come second.
             if cut != Some(Axis::X) {
                 height *= 0.5;
-                depth += 1;
+                along_y += 1;
             }
         }
-        depth.min(Self::DEEPEST)
+        [along_x, along_y]
     }
 
     /// Where the cell lies; exact, since every edge is a dyadic fraction.

@@ -2,6 +2,7 @@
 //!
 //! Only what determines the image: an image made alone and the same image of a set have the same record.
 
+use crate::confidence::Confidence;
 use protocols::{PerChannel, Quadrature, RayCount, RefinementDriver, Sha256Digest, TreePlan};
 
 /// How one image was made.
@@ -17,6 +18,8 @@ pub struct ImageRecord {
     pub samples: PerChannel<u64>,
     /// Below these depths of the tree a channel was not computed.
     pub stop_depths: PerChannel<Option<u32>>,
+    /// How well every region was to be known, if the trace was to end by that.
+    pub until: Option<Confidence>,
     /// The seed of the sample positions.
     pub seed: u64,
     /// At which wavelengths light was carried.
@@ -49,6 +52,11 @@ impl ImageRecord {
             ("stopDepthC1", depth(self.stop_depths.c1)),
             ("stopDepthC2", depth(self.stop_depths.c2)),
             ("treeDriver", driver.to_owned()),
+            (
+                "treeUntilWithin",
+                self.until
+                    .map_or("none".to_owned(), |until| until.to_string()),
+            ),
             ("treeMinDepth", self.tree.min_depth.to_string()),
         ]
     }

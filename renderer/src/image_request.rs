@@ -1,7 +1,7 @@
 //! What one image is made from, and whether it can be made.
 
 use std::num::NonZeroUsize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use protocols::{
     Channel, ChannelGroup, InputError, PerChannel, Quadrature, RayCount, RefinementDriver,
@@ -11,6 +11,7 @@ use protocols::{
 use crate::account::RayAccount;
 use crate::acuity_limits::AcuityLimits;
 use crate::cell::Cell;
+use crate::confidence::Confidence;
 use crate::refine::TracePlan;
 use crate::screen_tree::{Reach, ScreenTree};
 
@@ -33,6 +34,10 @@ pub struct ImageRequest {
     pub tree: TreePlan,
     /// How many threads; one for each core if not said. The image is the same with any number.
     pub threads: Option<NonZeroUsize>,
+    /// How well every region is to be known; the ray counts are then the most that may be taken.
+    pub until: Option<Confidence>,
+    /// Where to write the map of its samples, as a picture (`.png`) or as numbers (`.exr`).
+    pub samples_maps: Vec<PathBuf>,
 }
 
 impl ImageRequest {
@@ -53,6 +58,8 @@ impl ImageRequest {
             quadrature: plan.quadrature,
             tree: plan.tree.clone(),
             threads: None,
+            until: None,
+            samples_maps: Vec::new(),
         }
     }
 
@@ -80,6 +87,7 @@ impl ImageRequest {
             min_depth: self.tree.min_depth,
             driver: self.tree.driver,
             stops: PerChannel::from_fn(|channel| self.reach(channel)),
+            until: self.until,
         }
     }
 
@@ -105,6 +113,14 @@ impl ImageRequest {
     /// How many rectangles each channel's image is filtered from, counted in the same way.
     pub fn rectangles_in(&self, tree: &ScreenTree) -> PerChannel<u64> {
         PerChannel::from_fn(|channel| tree.leaf_count(self.reach(channel)) as u64)
+    }
+
+    /// About how much memory it takes to make the image: 64 bytes a ray at most, and at most 48 a pixel for
+    /// the three channels, the sums of their filters, the picture and the file.
+    pub fn memory_bytes(&self) -> u64 {
+        let rays = u64::from(self.rays_a.max(self.rays_c1c2).get());
+        let [width, height] = self.size_px.map(u64::from);
+        64 * rays + 48 * width * height
     }
 
     /// Refuses a request that contradicts itself; `scene` is only named in errors.
@@ -141,6 +157,14 @@ impl ImageRequest {
             let found = format!("{fewest} rays and a minimum depth of {min_depth} ({cells} cells)");
             let expected = "at least one ray for each cell of the minimum depth";
             return wrong("ray count", found, expected);
+        }
+        if let Some(Confidence { channel, .. }) = self.until
+            && channel != Channel::A
+            && (self.rays(channel) < most || self.stop_depths[channel].is_some())
+        {
+            let found = format!("the means of {channel} to be known, which stops before A");
+            let expected = "a channel that is shaded wherever a ray goes";
+            return wrong("confidence", found, expected);
         }
         self.check_depths()
             .or_else(|(found, expected)| wrong("stop depth", found, expected))

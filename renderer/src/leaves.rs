@@ -15,6 +15,7 @@
 //! fixed, so that a tree that ends within a round is the beginning of the one that goes on.
 
 use crate::cell::{Axis, Cell};
+use crate::confidence::{Confidence, Regions};
 use crate::leaf_map::{LeafMap, Neighbour};
 use crate::priority::{CLASSES, DUE, NEVER, PriorityRule, expected_variances};
 use crate::sampler::ScreenPoint;
@@ -34,6 +35,9 @@ pub(crate) trait Samples {
 
     /// The variance of two samples, `(x1 - x2)² / 2`.
     fn variance(&self, one: u32, other: u32) -> f32;
+
+    /// The same in the channel whose means are to be known.
+    fn doubt(&self, one: u32, other: u32) -> f32;
 }
 
 /// The variance that a neighbour leads to expect in a leaf, and the axis on which that neighbour lies.
@@ -90,12 +94,23 @@ pub(crate) struct Leaves {
     nodes: Vec<u32>,
     expected: Vec<Expected>,
     map: LeafMap,
+    /// What is known of the screen, if the run is to end by it.
+    regions: Option<Regions>,
+    /// The variance to be expected in each leaf in the channel whose means are to be known.
+    doubts: Vec<Expected>,
 }
 
 impl Leaves {
-    /// The one leaf of a tree of one sample.
-    pub(crate) fn new(rule: PriorityRule, size_px: [u32; 2]) -> Self {
+    /// The one leaf of a tree of one sample; if the run is to end by `confidence`, known regions rest.
+    pub(crate) fn new(
+        rule: PriorityRule,
+        size_px: [u32; 2],
+        confidence: Option<Confidence>,
+    ) -> Self {
+        let regions = confidence.map(|confidence| Regions::new(confidence, size_px));
         Self {
+            doubts: regions.iter().map(|_| Expected::default()).collect(),
+            regions,
             rule,
             size_px,
             cells: vec![PlacedNode::ROOT.cell],
@@ -108,6 +123,7 @@ impl Leaves {
     /// The leaves of the next round, in its order; none if no leaf may be split.
     pub(crate) fn next_round(&mut self) -> Vec<Split> {
         self.refine_map();
+        self.learn_regions();
         let mut counts = vec![0_usize; CLASSES];
         for class in self.classes() {
             counts[class] += 1;
@@ -151,6 +167,9 @@ impl Leaves {
         self.cells.push(new.cell);
         self.nodes.push(new.index);
         self.expected.push(Expected::default());
+        if self.regions.is_some() {
+            self.doubts.push(Expected::default());
+        }
         self.map.enter(new.sample, &new.cell.rectangle());
         for half in [old, new] {
             self.look_around(half, samples);
@@ -166,24 +185,59 @@ impl Leaves {
     fn look_around(&mut self, leaf: PlacedNode, samples: &impl Samples) {
         let own = leaf.sample;
         let around = self.map.around(&leaf.cell.rectangle());
-        let mut expected = Expected::default();
+        let (mut expected, mut in_doubt) = (Expected::default(), Expected::default());
         for neighbour in around.into_iter().flatten() {
             let other = neighbour.leaf;
             let variance = samples.variance(own, other);
-            if other == own || variance == 0.0 {
+            let doubt = match self.regions {
+                Some(_) => samples.doubt(own, other),
+                None => 0.0,
+            };
+            if other == own || (variance == 0.0 && doubt == 0.0) {
                 continue;
             }
             let places = [own, other].map(|sample| samples.point(sample));
-            let [here, there] = expected_variances(variance, share(neighbour, places));
-            expected.raise(here, neighbour.axis);
-            self.expected[other as usize].raise(there, neighbour.axis);
+            let (share, axis) = (share(neighbour, places), neighbour.axis);
+            let [here, there] = expected_variances(variance, share);
+            expected.raise(here, axis);
+            self.expected[other as usize].raise(there, axis);
+            let [here, there] = expected_variances(doubt, share);
+            in_doubt.raise(here, axis);
+            if let Some(doubt) = self.doubts.get_mut(other as usize) {
+                doubt.raise(there, axis);
+            }
         }
         self.expected[own as usize] = expected;
+        if let Some(doubt) = self.doubts.get_mut(own as usize) {
+            *doubt = in_doubt;
+        }
     }
 
     fn classes(&self) -> impl Iterator<Item = usize> {
-        let leaves = self.cells.iter().zip(&self.expected);
-        leaves.map(|(cell, &expected)| self.rule.class(*cell, expected.variance()))
+        let leaves = self.cells.iter().zip(&self.expected).enumerate();
+        leaves.map(|(leaf, (&cell, &expected))| {
+            let class = self.rule.class(cell, expected.variance());
+            let is_known = self.regions.as_ref().is_some_and(|regions| {
+                class != DUE && regions.is_known(cell, self.doubts[leaf].variance())
+            });
+            if is_known { NEVER } else { class }
+        })
+    }
+
+    fn learn_regions(&mut self) {
+        if let Some(regions) = &mut self.regions {
+            let doubts = self.doubts.iter().map(|doubt| doubt.variance());
+            regions.learn(self.cells.iter().copied().zip(doubts));
+        }
+    }
+
+    /// The part of the screen whose regions are not known yet; `None` if nobody asked for confidence.
+    pub(crate) fn unknown_area(&mut self) -> Option<f64> {
+        self.learn_regions();
+        let regions = self.regions.as_ref()?;
+        let leaves = self.cells.iter().zip(&self.doubts);
+        let unknown = leaves.filter(|&(&cell, doubt)| !regions.is_known(cell, doubt.variance()));
+        Some(unknown.map(|(cell, _)| cell.area()).sum())
     }
 
     fn split_of(&self, leaf: u32) -> Split {

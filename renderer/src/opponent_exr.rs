@@ -95,7 +95,7 @@ fn attributes(record: &ImageRecord) -> LayerAttributes {
 ///
 /// The header begins after the magic number and the version, 8 bytes. An attribute is a name and a type,
 /// each ended by a zero, the length of its value in 4 bytes, and the value; an empty name ends the header.
-fn sort_attributes(file: &mut [u8]) -> Option<()> {
+pub(crate) fn sort_attributes(file: &mut [u8]) -> Option<()> {
     let mut attributes = Vec::new();
     let mut end = 8;
     while *file.get(end)? != 0 {

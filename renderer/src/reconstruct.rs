@@ -19,35 +19,65 @@ use crate::screen_tree::Leaf;
 
 /// The picture of leaves that tile the screen.
 pub fn reconstruct(leaves: &[Leaf], size_px: [u32; 2]) -> ChannelImage {
-    let [columns, rows] = size_px.map(|size| Pixels {
-        count: size as usize,
-    });
-    let mut sums = vec![0.0; columns.count * rows.count];
-    let (mut along_x, mut along_y) = (Vec::new(), Vec::new());
-    for leaf in leaves {
+    let mut reconstruction = Reconstruction::new(size_px);
+    for &leaf in leaves {
+        reconstruction.add(leaf);
+    }
+    reconstruction.into_image()
+}
+
+/// A picture that grows leaf by leaf, so that a large tree's leaves need not be listed first.
+#[derive(Debug)]
+pub(crate) struct Reconstruction {
+    size_px: [u32; 2],
+    sums: Vec<f64>,
+    along_x: Vec<f64>,
+    along_y: Vec<f64>,
+}
+
+impl Reconstruction {
+    pub(crate) fn new(size_px: [u32; 2]) -> Self {
+        let [width, height] = size_px.map(|size| size as usize);
+        Self {
+            size_px,
+            sums: vec![0.0; width * height],
+            along_x: Vec::new(),
+            along_y: Vec::new(),
+        }
+    }
+
+    fn axes(&self) -> [Pixels; 2] {
+        self.size_px.map(|size| Pixels {
+            count: size as usize,
+        })
+    }
+
+    /// Adds what a leaf contributes to the pixels around it.
+    pub(crate) fn add(&mut self, leaf: Leaf) {
+        let [columns, rows] = self.axes();
         let rectangle = leaf.cell.rectangle();
-        let first_column = columns.weigh(rectangle.left, rectangle.width, &mut along_x);
-        let first_row = rows.weigh(rectangle.top, rectangle.height, &mut along_y);
+        let first_column = columns.weigh(rectangle.left, rectangle.width, &mut self.along_x);
+        let first_row = rows.weigh(rectangle.top, rectangle.height, &mut self.along_y);
         let value = f64::from(leaf.value);
-        for (row, weight_y) in (first_row..).zip(&along_y) {
+        for (row, weight_y) in (first_row..).zip(&self.along_y) {
             let start = row * columns.count + first_column;
             let weighted = value * weight_y;
-            for (sum, weight_x) in sums[start..].iter_mut().zip(&along_x) {
+            for (sum, weight_x) in self.sums[start..].iter_mut().zip(&self.along_x) {
                 *sum += weighted * weight_x;
             }
         }
     }
-    let on_screen_x = columns.on_screen();
-    let on_screen_y = rows.on_screen();
-    let weights = on_screen_y
-        .iter()
-        .flat_map(|y| on_screen_x.iter().map(move |x| x * y));
-    let values = sums
-        .iter()
-        .zip(weights)
-        .map(|(sum, weight)| to_f32(sum / weight));
-    let values = values.collect();
-    ChannelImage::from_rows(size_px, values)
+
+    /// The picture, once every leaf was added.
+    pub(crate) fn into_image(self) -> ChannelImage {
+        let [on_screen_x, on_screen_y] = self.axes().map(Pixels::on_screen);
+        let weights = on_screen_y
+            .iter()
+            .flat_map(|y| on_screen_x.iter().map(move |x| x * y));
+        let values = self.sums.iter().zip(weights);
+        let values = values.map(|(sum, weight)| to_f32(sum / weight)).collect();
+        ChannelImage::from_rows(self.size_px, values)
+    }
 }
 
 /// The pixels along one axis.

@@ -16,6 +16,7 @@ use rayon::prelude::*;
 
 use crate::cell::Cell;
 use crate::checkpoint::TakenSample;
+use crate::confidence::Confidence;
 use crate::leaves::{Leaves, Samples, Split};
 use crate::priority::PriorityRule;
 use crate::sampler::{GridPoint, Sampler, ScreenPoint};
@@ -37,6 +38,8 @@ pub struct TracePlan {
     pub driver: RefinementDriver,
     /// How far each channel is shaded. The samples taken are the most that any channel asks for.
     pub stops: PerChannel<Reach>,
+    /// How well every region is to be known; the trace ends where it is, or else with its rays.
+    pub until: Option<Confidence>,
 }
 
 impl TracePlan {
@@ -111,7 +114,7 @@ pub(crate) fn trace_from<S: Sampler>(
     let mut tree = ScreenTree::new(&first, plan.capacity(), rays);
     let pixels = f64::from(plan.size_px[0]) * f64::from(plan.size_px[1]);
     let rule = PriorityRule::new(plan.min_depth, plan.deepest(), 1.0 / pixels);
-    let mut leaves = Leaves::new(rule, plan.size_px);
+    let mut leaves = Leaves::new(rule, plan.size_px, plan.until);
     while tree.len() < rays {
         let mut round = leaves.next_round();
         round.truncate(rays - tree.len());
@@ -131,6 +134,7 @@ pub(crate) fn trace_from<S: Sampler>(
             progress(tree.len() as u64, rays as u64);
         }
     }
+    tree.unknown_area = leaves.unknown_area();
     tree
 }
 
@@ -205,13 +209,24 @@ impl Samples for DriverSamples<'_> {
     /// The largest over the drivers that have both; of what can be shown, since a highlight a hundred times as
     /// bright as white would draw all samples to itself.
     fn variance(&self, one: u32, other: u32) -> f32 {
-        let of_channel = |channel| {
-            let [one, other] = [one, other].map(|sample| self.tree.value(channel, sample));
-            let difference = shown(one?) - shown(other?);
-            Some(0.5 * difference * difference)
-        };
         let drivers = Channel::ALL.into_iter().filter(|&c| self.plan.is_driver(c));
-        drivers.filter_map(of_channel).fold(0.0, f32::max)
+        drivers
+            .filter_map(|channel| self.variance_of(channel, [one, other]))
+            .fold(0.0, f32::max)
+    }
+
+    fn doubt(&self, one: u32, other: u32) -> f32 {
+        let until = self.plan.until;
+        let doubt = until.and_then(|until| self.variance_of(until.channel, [one, other]));
+        doubt.unwrap_or(0.0)
+    }
+}
+
+impl DriverSamples<'_> {
+    fn variance_of(&self, channel: Channel, samples: [u32; 2]) -> Option<f32> {
+        let [one, other] = samples.map(|sample| self.tree.value(channel, sample));
+        let difference = shown(one?) - shown(other?);
+        Some(0.5 * difference * difference)
     }
 }
 

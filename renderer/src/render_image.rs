@@ -9,18 +9,21 @@ use rayon::prelude::*;
 use crate::account::RayAccount;
 use crate::channel_image::ChannelImage;
 use crate::checkpoint::Checkpoint;
+use crate::confidence::ConfidenceReached;
 use crate::error::RendererError;
 use crate::image_record::ImageRecord;
 use crate::image_request::ImageRequest;
 use crate::opponent_exr;
-use crate::reconstruct::reconstruct;
+use crate::reconstruct::Reconstruction;
 use crate::remark;
 use crate::sampler::Sampler;
-use crate::srgb_png::SrgbEncoder;
+use crate::samples_map::{self, SamplesMap};
+use crate::screen_tree::ScreenTree;
+use crate::srgb_png::{SrgbEncoder, SrgbImage};
 use crate::watch::Watch;
 
 /// What was made and what it cost.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ImageSummary {
     /// The file.
     pub path: PathBuf,
@@ -30,12 +33,16 @@ pub struct ImageSummary {
     pub account: RayAccount,
     /// How many rectangles each channel's image was filtered from.
     pub rectangles: PerChannel<u64>,
+    /// Whether the picture is as well known as it was to be, if that was asked for.
+    pub confidence: Option<ConfidenceReached>,
     /// Pixels that had to be clipped to the sRGB gamut.
     pub out_of_gamut_px: u32,
     /// What a reader of the image must know.
     pub remark: Option<&'static str>,
     /// The warnings of the scene.
     pub warnings: Vec<String>,
+    /// The image as a display is given it.
+    pub picture: SrgbImage,
 }
 
 impl fmt::Display for ImageSummary {
@@ -43,6 +50,9 @@ impl fmt::Display for ImageSummary {
         let PerChannel { a, c1, c2 } = self.rectangles;
         writeln!(formatter, "{}", self.path.display())?;
         writeln!(formatter, "{}", self.account)?;
+        if let Some(confidence) = &self.confidence {
+            writeln!(formatter, "{confidence}")?;
+        }
         write!(formatter, "rectangles filtered: A {a}, C1 {c1}, C2 {c2}; ")?;
         write!(
             formatter,
@@ -93,13 +103,13 @@ pub fn render_image_of(
     watch: &Watch<'_>,
 ) -> Result<ImageSummary, RendererError> {
     let format = Format::of(out)?;
+    samples_map::check_names(&request.samples_maps)?;
     let plan = request.trace_plan();
     let checkpoint = Checkpoint::beside(out, &plan, request.quadrature, &scene_sha256);
     let tree = checkpoint.trace(sampler, &plan, watch)?;
     let images: Vec<(ChannelImage, u64)> = Channel::ALL
         .into_par_iter()
-        .filter_map(|channel| tree.leaves(channel, request.reach(channel)))
-        .map(|leaves| (reconstruct(&leaves, request.size_px), leaves.len() as u64))
+        .filter_map(|channel| channel_image(&tree, channel, request))
         .collect();
     let [(a, a_count), (c1, c1_count), (c2, c2_count)] = images.as_slice() else {
         return Err(RendererError::Encoding {
@@ -113,6 +123,18 @@ pub fn render_image_of(
         c1: *c1_count,
         c2: *c2_count,
     };
+    write_samples_maps(&tree, request)?;
+    let account = tree.account();
+    let confidence = request
+        .until
+        .zip(tree.unknown_area)
+        .map(|(until, unknown_area)| ConfidenceReached {
+            until,
+            rays: account.intersections,
+            unknown_area,
+        });
+    // It may be larger than all that is still to be made.
+    drop(tree);
     let picture = SrgbEncoder::new().encode(channels);
     let bytes = match format {
         Format::Exr => {
@@ -126,12 +148,39 @@ pub fn render_image_of(
     Ok(ImageSummary {
         path: out.to_owned(),
         sha256: Sha256Digest::of(&bytes),
-        account: tree.account(),
+        account,
         rectangles,
+        confidence,
         out_of_gamut_px: picture.out_of_gamut_px,
         remark: remark::of_driver(request.tree.driver),
         warnings: Vec::new(),
+        picture,
     })
+}
+
+/// The image of a channel and the number of its leaves; `None` if the channel stopped earlier.
+fn channel_image(
+    tree: &ScreenTree,
+    channel: Channel,
+    request: &ImageRequest,
+) -> Option<(ChannelImage, u64)> {
+    let mut reconstruction = Reconstruction::new(request.size_px);
+    let mut leaves = 0;
+    tree.visit_leaves(channel, request.reach(channel), |leaf| {
+        reconstruction.add(leaf);
+        leaves += 1;
+    })?;
+    Some((reconstruction.into_image(), leaves))
+}
+
+fn write_samples_maps(tree: &ScreenTree, request: &ImageRequest) -> Result<(), RendererError> {
+    if request.samples_maps.is_empty() {
+        return Ok(());
+    }
+    let reach = PerChannel::from_fn(|channel| request.reach(channel));
+    let map = SamplesMap::new(tree, reach, request.size_px);
+    let mut files = request.samples_maps.iter();
+    files.try_for_each(|file| map.write(file))
 }
 
 impl ImageRequest {
@@ -147,6 +196,7 @@ impl ImageRequest {
             rays_a: self.rays_a,
             rays_c1c2: self.rays_c1c2,
             stop_depths: self.stop_depths,
+            until: self.until,
             seed: self.seed,
             quadrature: self.quadrature,
             tree: self.tree.clone(),

@@ -32,6 +32,8 @@ pub struct ScreenTree {
     nodes: Vec<Node>,
     samples: PerChannel<ChannelSamples>,
     points: Vec<GridPoint>,
+    /// The part of the screen whose mean was not known when the trace ended, if it was to end by that.
+    pub(crate) unknown_area: Option<f64>,
 }
 
 /// What is stored of a node: 0 for a leaf; else the sample that split it, and above it one bit that says
@@ -158,6 +160,7 @@ impl ScreenTree {
                 ChannelSamples::with_capacity(capacity[channel])
             }),
             points: Vec::with_capacity(rays),
+            unknown_area: None,
         };
         tree.store(first);
         tree
@@ -271,11 +274,11 @@ impl ScreenTree {
         &self,
         channel: Channel,
         reach: Reach,
-        mut visit: impl FnMut(&Leaf),
+        mut visit: impl FnMut(Leaf),
     ) -> Option<()> {
         for PlacedNode { cell, sample, .. } in self.leaf_nodes(reach) {
             let value = self.value(channel, sample)?;
-            visit(&Leaf { cell, value });
+            visit(Leaf { cell, value });
         }
         Some(())
     }
@@ -286,7 +289,7 @@ impl ScreenTree {
     /// A ray count beyond the end of the tree means the whole tree.
     pub fn leaves(&self, channel: Channel, reach: Reach) -> Option<Vec<Leaf>> {
         let mut leaves = Vec::with_capacity(reach.rays.min(self.len()));
-        self.visit_leaves(channel, reach, |leaf| leaves.push(*leaf))?;
+        self.visit_leaves(channel, reach, |leaf| leaves.push(leaf))?;
         Some(leaves)
     }
 }

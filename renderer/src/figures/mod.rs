@@ -7,6 +7,7 @@
 
 mod channel_grey;
 mod rasterizer;
+pub(crate) mod samples_sheet;
 mod sensitivity_plot;
 mod sheet;
 mod verified_set;

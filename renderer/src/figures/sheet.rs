@@ -105,7 +105,7 @@ impl Sheet {
 }
 
 /// Copies all pixels of a picture into a larger one.
-fn copy(picture: &SrgbImage, sheet: &mut SrgbImage, [left, top]: [u32; 2]) {
+pub(super) fn copy(picture: &SrgbImage, sheet: &mut SrgbImage, [left, top]: [u32; 2]) {
     let [width, sheet_width] = [picture, &*sheet].map(|image| image.size_px[0] as usize);
     let rows = picture.bytes.chunks_exact(3 * width);
     for (row, pixels) in (top as usize..).zip(rows) {

@@ -69,5 +69,6 @@ pub(crate) fn plan(rays: usize) -> TracePlan {
         min_depth: 6,
         driver: RefinementDriver::A,
         stops: PerChannel::from_fn(|_| Reach::rays(rays)),
+        until: None,
     }
 }

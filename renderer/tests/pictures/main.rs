@@ -8,6 +8,7 @@
 mod acuity;
 mod analytic;
 mod closed_forms;
+mod confidence;
 mod estimates;
 mod every_scene;
 mod files;
@@ -16,6 +17,7 @@ mod platform;
 mod prefix;
 mod quadrature;
 mod reconstruction;
+mod samples_map;
 mod scene;
 mod set;
 mod small_study;
