@@ -2,16 +2,17 @@
 
     python export.py SCENE.toml OUT.xml [--size 320x320] [--samples 64] [--lights 0,2]
 
-or, from another script, `Exported(scene_file, mesh_folder).xml(size_px, samples)`. Geometry, reflectances and emittances are exact in
-Mitsuba's single precision; a cone and a patterned disc are fans of 2048 triangles, written as PLY beside the
-XML. What Mitsuba has no counterpart for is listed in `Exported.notes` and printed: ambient light that nothing
-blocks, Phong highlights of lights that have no extent, and the clear coat (written as `plastic`).
+or, from another script, `Exported(scene_file, mesh_folder).xml(size_px, samples)`. Geometry, reflectances and
+emittances are exact in Mitsuba's single precision; a cone, a patterned disc and a thin cylinder are many narrow
+triangles, written as PLY beside the XML. What plain Mitsuba has no counterpart for is listed in `Exported.notes` and
+printed: ambient light that nothing blocks, Phong highlights of lights that have no extent, and the clear coat
+(written as `plastic`). With `exact=True` these are there too; the XML then needs the plugins of `whitted.py`.
 
 Units. Ours: illuminance 1 makes a perfect white diffuser Y = 1. Mitsuba's: watts. A perfect diffuser under
-the irradiance E sends E/pi, so emittances of Y = 1 are multiplied by pi; the constant by which Mitsuba's XYZ
-differ is taken out too. So the XYZ of a Mitsuba film are ours.
+the irradiance E sends E/pi, so illuminances are multiplied by pi; the constant by which Mitsuba's XYZ differ is
+taken out too. So the XYZ of a Mitsuba film are ours.
 
-Lights are numbered as Acuity numbers them: the distant ones, then the point ones, then the areas.
+Lights are numbered in the order distant, point, rectangle, sphere.
 """
 
 import argparse
@@ -22,20 +23,25 @@ from pathlib import Path
 from xml.sax.saxutils import escape
 
 import spectra
-from geometry import Frame, add, cross, difference, fan, length, matrix, scaled, unit
+from geometry import Frame, add, cross, difference, fan, length, matrix, scaled, tube, unit, write_triangles
 
-POWER = math.pi * spectra.MITSUBA_INTEGRAL_OF_Y / spectra.SUM_OF_Y
+RADIANCE = spectra.MITSUBA_INTEGRAL_OF_Y / spectra.SUM_OF_Y
+POWER = math.pi * RADIANCE
 # The endless ground becomes a square of this half size about the camera.
 GROUND_HALF_M = 60.0
+# Mitsuba solves for a cylinder in units of its radius; in single precision a thin one far away is lost (at
+# 8 m and a radius of 4 mm the sought difference of squares is 1 of 4 million). Thinner ones become triangles.
+THINNEST_CYLINDER_M = 0.05
 
 
 class Exported:
     """A scene as pieces of XML: shapes, materials, lights."""
 
-    def __init__(self, scene_file, mesh_folder=None):
+    def __init__(self, scene_file, mesh_folder=None, exact=False):
         self.path = Path(scene_file)
         self.scene = tomllib.loads(self.path.read_text())
         self.mesh_folder = Path(mesh_folder) if mesh_folder else self.path.parent
+        self.exact = exact
         self.notes = []
         self.materials = {}
         for kind in ("diffuse", "glossy", "mirror", "glass"):
@@ -46,9 +52,11 @@ class Exported:
     def note_what_has_no_counterpart(self):
         known = {"camera", "ambient", "distant_light", "point_light", "reflectances", "diffuse", "glossy"}
         known |= {"mirror", "glass", "sphere", "box", "cylinder", "cone", "disc", "rectangle", "ground"}
-        known |= {"rectangle_light", "mesh"}
+        known |= {"rectangle_light", "sphere_light"}
         for key in self.scene.keys() - known:
             raise ValueError(f"{self.path}: the table {key} cannot be exported")
+        if self.exact:
+            return
         if "ambient" in self.scene:
             self.notes.append("ambient light is left out: Mitsuba has none that nothing blocks")
         for name, (kind, material) in self.materials.items():
@@ -60,8 +68,31 @@ class Exported:
     def reflectance(self, name, value):
         return spectra.xml(name, spectra.reflectance(value, self.scene.get("reflectances", {})))
 
-    def lights(self):
-        """One element for each light."""
+    def lights(self, kept):
+        """The elements of the lights of the numbers `kept`; other areas are there and dark."""
+        found = self.lights_without_extent()
+        found = [light for number, light in enumerate(found) if number in kept]
+        number = len(self.lights_without_extent())
+        black = '<bsdf type="diffuse"><spectrum name="reflectance" value="0"/></bsdf>'
+        for kind in ("rectangle_light", "sphere_light"):
+            for light in self.scene.get(kind, []):
+                radiance = spectra.xml("radiance", spectra.emittance(light["emittance"]), RADIANCE * light["luminance"])
+                shines = f'<emitter type="area">{radiance}</emitter>' if number in kept else ""
+                if kind == "rectangle_light":
+                    u, v = light["edge_u_m"], light["edge_v_m"]
+                    columns = rectangle_columns(light["corner_m"], u, v)
+                    found.append(shape("rectangle", columns, black + shines))
+                else:
+                    place = point("center", light["center_m"]) + number_of("radius", light["radius_m"])
+                    found.append(f'<shape type="sphere">{place}{black}{shines}</shape>')
+                number += 1
+        return found
+
+    def light_count(self):
+        kinds = ("distant_light", "point_light", "rectangle_light", "sphere_light")
+        return sum(len(self.scene.get(kind, [])) for kind in kinds)
+
+    def lights_without_extent(self):
         found = []
         for light in self.scene.get("distant_light", []):
             direction = scaled(unit(light["from"]), -1)
@@ -72,14 +103,14 @@ class Exported:
             found.append(f'<emitter type="point">{point("position", light["position_m"])}{power}</emitter>')
         return found
 
-    def body(self, material, to_uv):
+    def body(self, material, to_uv, name="reflectance"):
         """The reflectance of a body; `to_uv` takes a size to the scale and offset of Mitsuba's u and v."""
         if "checker" in material:
             pattern, across = material["checker"], "uv"
         elif "stripes" in material:
             pattern, across = material["stripes"], material["stripes"]["across"]
         else:
-            return self.reflectance("reflectance", material["reflectance"])
+            return self.reflectance(name, material["reflectance"])
         # Mitsuba's checkerboard has its period at 1: two of our squares.
         (scale_u, start_u), (scale_v, start_v) = to_uv(2 * pattern["size_m"])
         if "u" not in across:
@@ -88,23 +119,36 @@ class Exported:
             scale_v, start_v = 0, 0.25
         place = [scale_u, 0, 0, start_u, 0, scale_v, 0, start_v, 0, 0, 1, 0, 0, 0, 0, 1]
         return (
-            '<texture type="checkerboard" name="reflectance">'
+            f'<texture type="checkerboard" name="{name}">'
             + self.reflectance("color0", material["reflectance"])
             + self.reflectance("color1", pattern["reflectance"])
             + f'<transform name="to_uv">{matrix(place)}</transform></texture>'
         )
 
+    def gloss(self, kind, material, to_uv):
+        """A surface with a highlight or a coat, as the plugin of `whitted.py`."""
+        if kind == "mirror":
+            inner = self.reflectance("metal", material["reflectance"])
+        else:
+            inner = self.body(material, to_uv, "body")
+        for key in ("refractive_index", "highlight", "exponent"):
+            if key in material:
+                inner += number_of(key, float(material[key]))
+        return f'<bsdf type="acuity_gloss">{inner}</bsdf>'
+
     def bsdf(self, name, to_uv):
         kind, material = self.materials[name]
-        if kind == "mirror":
+        if kind == "glass":
+            index = number_of("int_ior", material["refractive_index"]) + number_of("ext_ior", 1)
+            return f'<bsdf type="dielectric">{index}</bsdf>'
+        if self.exact and (kind == "glossy" or "highlight" in material):
+            inner = self.gloss(kind, material, to_uv)
+        elif kind == "mirror":
             mirror = self.reflectance("specular_reflectance", material["reflectance"])
             inner = f'<bsdf type="conductor"><string name="material" value="none"/>{mirror}</bsdf>'
-        elif kind == "glass":
-            index = material["refractive_index"]
-            return f'<bsdf type="dielectric">{number("int_ior", index)}{number("ext_ior", 1)}</bsdf>'
         elif "refractive_index" in material:
-            body = self.body(material, to_uv).replace('"reflectance"', '"diffuse_reflectance"')
-            index = number("int_ior", material["refractive_index"]) + number("ext_ior", 1)
+            body = self.body(material, to_uv, "diffuse_reflectance")
+            index = number_of("int_ior", material["refractive_index"]) + number_of("ext_ior", 1)
             inner = f'<bsdf type="plastic">{index}{body}</bsdf>'
         else:
             inner = f'<bsdf type="diffuse">{self.body(material, to_uv)}</bsdf>'
@@ -116,16 +160,12 @@ class Exported:
 
     def rectangle(self, name, corner, edges, start_m=(0, 0)):
         """A rectangle; the surface coordinates at its corner are `start_m`."""
-        u, v = edges
-        middle = add(corner, scaled(add(u, v), 0.5))
-        normal = unit(cross(u, v))
-        columns = (scaled(u, 0.5), scaled(v, 0.5), normal, middle)
 
         def to_uv(period_m):
-            sides = zip((length(u), length(v)), start_m)
+            sides = zip(map(length, edges), start_m)
             return [(side / period_m, start / period_m) for side, start in sides]
 
-        return shape("rectangle", columns, self.bsdf(name, to_uv))
+        return shape("rectangle", rectangle_columns(corner, *edges), self.bsdf(name, to_uv))
 
     def box(self, box):
         turn = math.radians(box.get("rotation_deg", 0))
@@ -155,11 +195,11 @@ class Exported:
             return shape("disk", columns, self.bsdf(name, None))
         apex = (center, lambda angle: (0.0, 0.0))
         rim = lambda angle: (radius * math.cos(angle), radius * math.sin(angle))
-        return self.fan(name, apex, (center, frame, radius, rim), label)
+        return self.triangles(name, fan(apex, (center, frame, radius, rim)), label)
 
-    def fan(self, name, apex, rim, label):
+    def triangles(self, name, corners, label):
         file = self.mesh_folder / f"{self.path.stem}-{label}.ply"
-        fan(file, apex, rim)
+        write_triangles(file, corners)
         bsdf = self.bsdf(name, lambda period_m: [(1 / period_m, 0), (1 / period_m, 0)])
         filename = f'<string name="filename" value="{escape(str(file.resolve()))}"/>'
         return f'<shape type="ply">{filename}<boolean name="face_normals" value="true"/>{bsdf}</shape>'
@@ -174,8 +214,11 @@ class Exported:
             around = 2 * math.pi * radius / period_m
             return [(around, -around / 2), (height / period_m, 0)]
 
-        columns = (scaled(frame.across, -radius), scaled(frame.along, -radius), scaled(frame.axis, height), base)
-        yield shape("cylinder", columns, self.bsdf(name, to_uv))
+        if radius < THINNEST_CYLINDER_M:
+            yield self.triangles(name, tube(base, top, frame, radius), f"{label}-side")
+        else:
+            columns = (scaled(frame.across, -radius), scaled(frame.along, -radius), scaled(frame.axis, height), base)
+            yield shape("cylinder", columns, self.bsdf(name, to_uv))
         yield self.disc(name, base, frame, radius, f"{label}-base")
         yield self.disc(name, top, frame, radius, f"{label}-top")
 
@@ -185,7 +228,7 @@ class Exported:
         slope = math.hypot(length(difference(apex, base)), radius)
         tip = (apex, lambda angle: (radius * angle, slope))
         rim = (base, frame, radius, lambda angle: (radius * angle, 0.0))
-        yield self.fan(cone["material"], tip, rim, f"{label}-side")
+        yield self.triangles(cone["material"], fan(tip, rim), f"{label}-side")
         yield self.disc(cone["material"], base, frame, radius, f"{label}-base")
 
     def shapes(self):
@@ -218,7 +261,7 @@ class Exported:
         width, height = size_px
         return (
             f'<sensor type="perspective"><string name="fov_axis" value="y"/>'
-            f'{number("fov", camera["vertical_field_of_view_deg"])}'
+            f'{number_of("fov", camera["vertical_field_of_view_deg"])}'
             f'<transform name="to_world">{look}</transform>'
             f'<sampler type="independent"><integer name="sample_count" value="{samples}"/></sampler>'
             f'<film type="hdrfilm"><integer name="width" value="{width}"/><integer name="height" value="{height}"/>'
@@ -226,15 +269,30 @@ class Exported:
             '<rfilter type="tent"/></film></sensor>'
         )
 
+    def ambient(self):
+        if "ambient" not in self.scene:
+            return ""
+        ambient = self.scene["ambient"]
+        return spectra.xml("ambient", spectra.emittance(ambient["emittance"]), RADIANCE * ambient["illuminance"])
+
     def xml(self, size_px=(320, 320), samples=64, lights=None, integrator=None):
         """The whole scene; `lights` are the numbers of those to keep, all of them if not said."""
-        integrator = integrator or '<integrator type="path"><integer name="max_depth" value="6"/></integrator>'
-        kept = [light for number, light in enumerate(self.lights()) if lights is None or number in lights]
-        parts = [integrator, self.sensor(size_px, samples), *kept, *self.shapes()]
+        kept = range(self.light_count()) if lights is None else lights
+        if self.exact:
+            integrator = f'<integrator type="whitted">{self.ambient()}</integrator>'
+        elif integrator is None:
+            integrator = '<integrator type="path"><integer name="max_depth" value="6"/></integrator>'
+        parts = [integrator, self.sensor(size_px, samples), *self.lights(kept), *self.shapes()]
         return '<?xml version="1.0"?>\n<scene version="3.0.0">\n' + "\n".join(parts) + "\n</scene>\n"
 
 
-def number(name, value):
+def rectangle_columns(corner, u, v):
+    """What takes Mitsuba's square from -1 to 1 to a rectangle."""
+    middle = add(corner, scaled(add(u, v), 0.5))
+    return (scaled(u, 0.5), scaled(v, 0.5), unit(cross(u, v)), middle)
+
+
+def number_of(name, value):
     return f'<float name="{name}" value="{value}"/>'
 
 

@@ -46,21 +46,43 @@ def matrix(rows):
     return '<matrix value="{}"/>'.format(" ".join(f"{value:.9g}" for value in rows))
 
 
-def fan(file, apex, rim):
-    """Writes a fan of triangles as binary PLY: a cone's side or a disc, with surface coordinates.
+def ring(steps):
+    """The pairs of neighbouring angles round a circle, from -pi."""
+    angles = [2 * math.pi * step / steps - math.pi for step in range(steps + 1)]
+    return zip(angles, angles[1:])
+
+
+def on_circle(center, frame, radius, angle):
+    aside = add(scaled(frame.across, math.cos(angle)), scaled(frame.along, math.sin(angle)))
+    return add(center, scaled(aside, radius))
+
+
+def fan(apex, rim):
+    """The corners of a fan of triangles: a cone's side or a disc, with surface coordinates.
 
     `apex` is a place and a function from the angle to its surface coordinates; `rim` is the middle, frame and
     radius of a circle, and such a function. Every triangle has corners of its own.
     """
     (tip, tip_coordinates), (center, frame, radius, rim_coordinates) = apex, rim
-    corners, faces = [], []
-    for triangle in range(FAN_TRIANGLES):
-        angles = [2 * math.pi * (triangle + step) / FAN_TRIANGLES - math.pi for step in (0, 1)]
-        faces.append(struct.pack("<B3i", 3, 3 * triangle, 3 * triangle + 1, 3 * triangle + 2))
+    for angles in ring(FAN_TRIANGLES):
         for angle in angles:
-            aside = add(scaled(frame.across, math.cos(angle)), scaled(frame.along, math.sin(angle)))
-            corners.append((*add(center, scaled(aside, radius)), *rim_coordinates(angle)))
-        corners.append((*tip, *tip_coordinates(sum(angles) / 2)))
+            yield (*on_circle(center, frame, radius, angle), *rim_coordinates(angle))
+        yield (*tip, *tip_coordinates(sum(angles) / 2))
+
+
+def tube(base, top, frame, radius):
+    """The corners of the triangles of a cylinder's side, with surface coordinates."""
+    height = length(difference(top, base))
+    for left, right in ring(FAN_TRIANGLES // 4):
+        low = [(*on_circle(base, frame, radius, angle), radius * angle, 0.0) for angle in (left, right)]
+        high = [(*on_circle(top, frame, radius, angle), radius * angle, height) for angle in (left, right)]
+        yield from (low[0], low[1], high[1], low[0], high[1], high[0])
+
+
+def write_triangles(file, corners):
+    """Writes triangles of three corners each, with surface coordinates, as binary PLY."""
+    corners = list(corners)
+    faces = [struct.pack("<B3i", 3, first, first + 1, first + 2) for first in range(0, len(corners), 3)]
     properties = "".join(f"property float {name}\n" for name in "xyzuv")
     header = (
         f"ply\nformat binary_little_endian 1.0\nelement vertex {len(corners)}\n{properties}"

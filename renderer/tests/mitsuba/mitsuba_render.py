@@ -1,7 +1,8 @@
 """Independent renders of an exported scene by Mitsuba 3, as mean and standard error for each pixel.
 
-Mitsuba's `path` samples one light at random; here every light is rendered alone and the pictures are added,
-so that all lights count and none adds to the noise of the others.
+Scenes in which no surface that scatters sees another lit one in a path of the length given are rendered by
+Mitsuba's own `path`. It samples one light at random; so every light is rendered alone and the pictures are
+added, and all lights count. Other scenes are rendered by `whitted.py`.
 """
 
 import os
@@ -16,24 +17,33 @@ import numpy as np
 VARIANT = "llvm_ad_spectral"
 mi.set_variant(VARIANT)
 
+import whitted  # noqa: F401, registers its plugins
 from export import Exported
 
-# How many hits a path may have before it must reach a light: 1 is direct light only.
-BOUNCES = {"mirror": 2}
+# How many hits a path of Mitsuba's own integrator may have; 1 is direct light only.
+PATH_HITS = {"lights": 1, "shadows": 1, "patterns": 1, "areas": 1, "mirror": 2}
+
+
+def load(scene_file, size_px, samples):
+    """The scenes whose pictures add up to that of the file."""
+    stem = Path(scene_file).stem
+    with tempfile.TemporaryDirectory() as folder:
+        exported = Exported(scene_file, folder, exact=stem not in PATH_HITS)
+        for note in exported.notes:
+            print(f"note: {note}")
+        if exported.exact:
+            return [mi.load_string(exported.xml(size_px, samples))]
+        depth = f'<integer name="max_depth" value="{PATH_HITS[stem] + 1}"/>'
+        integrator = f'<integrator type="path">{depth}</integrator>'
+        return [
+            mi.load_string(exported.xml(size_px, samples, [light], integrator))
+            for light in range(exported.light_count())
+        ]
 
 
 def renders(scene_file, size_px, samples, seeds):
     """The XYZ of each seed: an array of seeds x height x width x 3."""
-    hits = BOUNCES.get(Path(scene_file).stem, 1)
-    integrator = f'<integrator type="path"><integer name="max_depth" value="{hits + 1}"/></integrator>'
-    with tempfile.TemporaryDirectory() as folder:
-        exported = Exported(scene_file, folder)
-        for note in exported.notes:
-            print(f"note: {note}")
-        scenes = [
-            mi.load_string(exported.xml(size_px, samples, [light], integrator))
-            for light in range(len(exported.lights()))
-        ]
+    scenes = load(scene_file, size_px, samples)
 
     def render(number, seed):
         # No two renders share a random stream.
