@@ -16,6 +16,7 @@ import numpy as np
 from mitsuba_render import VARIANT, mean_and_error, mi, renders
 
 HERE = Path(__file__).resolve().parent
+OF_THE_STUDY = HERE.parents[2] / "stimuli/scenes/opponent-solids.toml"
 SIZE_PX = (48, 48)
 SAMPLES, SEEDS = 256, 32
 
@@ -37,9 +38,9 @@ def make(scene_file):
 
 
 def main():
-    cases = sys.argv[1:] or [path.stem for path in sorted((HERE / "scenes").glob("*.toml"))]
-    for case in cases:
-        make(HERE / "scenes" / f"{case}.toml")
+    for scene_file in [*sorted((HERE / "scenes").glob("*.toml")), OF_THE_STUDY]:
+        if scene_file.stem in (sys.argv[1:] or [scene_file.stem]):
+            make(scene_file)
 
 
 if __name__ == "__main__":

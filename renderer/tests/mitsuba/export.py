@@ -158,14 +158,16 @@ class Exported:
         material = self.materials[name][1]
         return "checker" in material or "stripes" in material
 
-    def rectangle(self, name, corner, edges, start_m=(0, 0)):
-        """A rectangle; the surface coordinates at its corner are `start_m`."""
+    def rectangle(self, name, corner, edges, start_m=(0, 0), flip=False):
+        """A rectangle; the surface coordinates at its corner are `start_m`; `flip` turns its front round."""
 
         def to_uv(period_m):
             sides = zip(map(length, edges), start_m)
             return [(side / period_m, start / period_m) for side, start in sides]
 
-        return shape("rectangle", rectangle_columns(corner, *edges), self.bsdf(name, to_uv))
+        u, v, normal, middle = rectangle_columns(corner, *edges)
+        columns = (u, v, scaled(normal, -1) if flip else normal, middle)
+        return shape("rectangle", columns, self.bsdf(name, to_uv))
 
     def box(self, box):
         turn = math.radians(box.get("rotation_deg", 0))
@@ -174,8 +176,10 @@ class Exported:
         low = difference(box["center_m"], scaled(add(add(*edges[:2]), edges[2]), 0.5))
         for across in range(3):
             u, v = [edges[axis] for axis in range(3) if axis != across]
-            for corner in (low, add(low, edges[across])):
-                yield self.rectangle(box["material"], corner, (u, v))
+            # Glass must face outwards; x cross z is against y.
+            for is_high, corner in enumerate((low, add(low, edges[across]))):
+                flip = (is_high == 1) == (across == 1)
+                yield self.rectangle(box["material"], corner, (u, v), flip=flip)
 
     def sphere(self, sphere):
         radius = sphere["radius_m"]
@@ -189,9 +193,10 @@ class Exported:
         columns = ((-radius, 0, 0), (0, -radius, 0), (0, 0, radius), sphere["center_m"])
         return shape("sphere", columns, self.bsdf(sphere["material"], to_uv))
 
-    def disc(self, name, center, frame, radius, label):
+    def disc(self, name, center, frame, radius, label, flip=False):
         if not self.is_patterned(name):
-            columns = (scaled(frame.across, radius), scaled(frame.along, radius), frame.axis, center)
+            axis = scaled(frame.axis, -1) if flip else frame.axis
+            columns = (scaled(frame.across, radius), scaled(frame.along, radius), axis, center)
             return shape("disk", columns, self.bsdf(name, None))
         apex = (center, lambda angle: (0.0, 0.0))
         rim = lambda angle: (radius * math.cos(angle), radius * math.sin(angle))
@@ -219,7 +224,7 @@ class Exported:
         else:
             columns = (scaled(frame.across, -radius), scaled(frame.along, -radius), scaled(frame.axis, height), base)
             yield shape("cylinder", columns, self.bsdf(name, to_uv))
-        yield self.disc(name, base, frame, radius, f"{label}-base")
+        yield self.disc(name, base, frame, radius, f"{label}-base", flip=True)
         yield self.disc(name, top, frame, radius, f"{label}-top")
 
     def cone(self, cone, label):
@@ -229,7 +234,7 @@ class Exported:
         tip = (apex, lambda angle: (radius * angle, slope))
         rim = (base, frame, radius, lambda angle: (radius * angle, 0.0))
         yield self.triangles(cone["material"], fan(tip, rim), f"{label}-side")
-        yield self.disc(cone["material"], base, frame, radius, f"{label}-base")
+        yield self.disc(cone["material"], base, frame, radius, f"{label}-base", flip=True)
 
     def shapes(self):
         """The elements of all shapes."""

@@ -13,7 +13,7 @@ import mitsuba as mi
 class Whitted(mi.SamplingIntegrator):
     def __init__(self, props):
         super().__init__(props)
-        self.max_hits = props.get("max_hits", 9)
+        self.max_hits = props.get("max_hits", 8)
         # The reflected light of a white surface that faces up, if nothing blocks it.
         self.ambient = props.get("ambient") if "ambient" in props else None
 
