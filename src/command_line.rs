@@ -36,6 +36,8 @@ pub(crate) enum Command {
     Figures(FiguresArguments),
     /// Run one session in a full-screen window; it resumes where it stopped.
     Run(RunArguments),
+    /// Close a session that will never be complete: it is kept, but not resumed.
+    Close(CloseArguments),
     /// Let simulated observers sit the same session.
     Simulate(SimulateArguments),
     /// Analyse the ratings of a study and write the report.
@@ -178,9 +180,32 @@ pub(crate) struct RunArguments {
     pub(crate) stimuli: StimuliFolder,
     #[command(flatten)]
     pub(crate) data: DataFolder,
+    /// Which sitting of the subject, from 1.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) session: u32,
+    /// Show the session on the monitor with this name.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) monitor: Option<String>,
     /// Try the session out, this many times faster; marked PILOT on the screen and in the data.
     #[arg(long, value_name = "SPEED", value_parser = pilot_speed)]
     pub(crate) pilot: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CloseArguments {
+    /// The protocol file.
+    pub(crate) protocol: PathBuf,
+    /// Code of the subject.
+    #[arg(long)]
+    pub(crate) subject: SubjectId,
+    /// Why, in a few words.
+    #[arg(long)]
+    pub(crate) reason: String,
+    /// Which sitting of the subject.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) session: u32,
+    #[command(flatten)]
+    pub(crate) data: DataFolder,
 }
 
 #[derive(Debug, Args)]
@@ -198,6 +223,9 @@ pub(crate) struct SimulateArguments {
     /// Folder of the simulated ratings [default: data/STUDY-simulated]
     #[arg(long)]
     pub(crate) data: Option<PathBuf>,
+    /// Replace the simulated ratings that are there.
+    #[arg(long)]
+    pub(crate) replace: bool,
 }
 
 #[derive(Debug, Args)]

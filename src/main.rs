@@ -45,6 +45,7 @@ fn run(command: Command, progress: Progress) -> anyhow::Result<ExitCode> {
         Command::Image(arguments) => image::image(&arguments, progress)?,
         Command::Figures(arguments) => render::figures(&arguments)?,
         Command::Run(arguments) => sit::run(&arguments)?,
+        Command::Close(arguments) => sit::close(&arguments)?,
         Command::Simulate(arguments) => sit::simulate(&arguments, progress)?,
         Command::Report(arguments) => analyse::report(&arguments)?,
         Command::Anova(arguments) => analyse::anova(&arguments)?,

@@ -4,10 +4,10 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use experiment::RunOptions;
-use protocols::{Observer, Study};
+use protocols::{DataSet, InputError, Observer, Study};
 use renderer::Scene;
 
-use crate::command_line::{CheckArguments, RunArguments, SimulateArguments};
+use crate::command_line::{CheckArguments, CloseArguments, RunArguments, SimulateArguments};
 use crate::console::{self, Progress};
 
 pub(crate) fn check(arguments: &CheckArguments) -> anyhow::Result<ExitCode> {
@@ -55,9 +55,32 @@ pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<()> {
         stimuli_dir: arguments.stimuli.of(&study),
         data_dir: arguments.data.of(&study),
         pilot: arguments.pilot,
+        session: arguments.session,
+        monitor: arguments.monitor.clone(),
     };
     let end = experiment::run(&study, &options)?;
     console::print(end)?;
+    Ok(())
+}
+
+pub(crate) fn close(arguments: &CloseArguments) -> anyhow::Result<()> {
+    let study = Study::read(&arguments.protocol)?;
+    let options = RunOptions {
+        subject: arguments.subject.clone(),
+        stimuli_dir: study.default_stimuli_dir(),
+        data_dir: arguments.data.of(&study),
+        pilot: None,
+        session: arguments.session,
+        monitor: None,
+    };
+    let end = experiment::close_session(&study, &options, &arguments.reason)?;
+    console::print(format!(
+        "subject {}: closed with {} of {} trials rated, in {}",
+        end.subject,
+        end.rated,
+        end.trials,
+        end.ratings_path.display()
+    ))?;
     Ok(())
 }
 
@@ -68,6 +91,15 @@ pub(crate) fn simulate(arguments: &SimulateArguments, progress: Progress) -> any
         .data
         .clone()
         .unwrap_or_else(|| study.default_data_dir(Observer::Simulated));
+    let description = DataSet::new(&data, &study.protocol.study).description_path();
+    if description.exists() && !arguments.replace {
+        let expected = "a folder without ratings";
+        return Err(InputError::new(&data, "a data set", expected)
+            .remedy(
+                "say --replace to replace simulated ratings, or name another folder with --data",
+            )
+            .into());
+    }
     let observers = Observers {
         number: arguments.subjects,
         seed: arguments.seed,

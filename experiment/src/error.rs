@@ -22,7 +22,7 @@ pub enum ExperimentError {
         source: io::Error,
     },
     /// Another window runs the same session.
-    #[error("subject {subject} is in a session already: another window holds \"{}\"; close that window first", file.display())]
+    #[error("subject {subject} is in a session already: another program holds \"{}\"; close its window first. The lock goes with the program: if no window is open, a program still runs unseen (`fuser` with the file names it)", file.display())]
     Busy {
         /// The subject.
         subject: SubjectId,
@@ -50,6 +50,45 @@ pub enum ExperimentError {
         window_px: [u32; 2],
         /// The size of the monitor.
         monitor_px: [u32; 2],
+    },
+    /// There is no monitor with this name.
+    #[error(
+        "found the monitors {all}, expected one named \"{wanted}\"; name one of those with --monitor"
+    )]
+    NoMonitor {
+        /// The name.
+        wanted: String,
+        /// The names that there are.
+        all: String,
+    },
+    /// The window holds other pixels than the images.
+    #[error(
+        "stimulus {stimulus}, pixel {}, {}: the window holds {}, expected {expected:?}; a session is shown only byte for byte: switch off scaling, colour management and compositing effects of the desktop, or use a monitor of 24 bits a pixel",
+        place_px[0], place_px[1],
+        found.as_ref().map_or_else(|| "nothing".to_owned(), |found| format!("{found:?}"))
+    )]
+    Pixel {
+        /// The image.
+        stimulus: String,
+        /// Where in the image.
+        place_px: [usize; 2],
+        /// What the window holds there, if it reaches so far.
+        found: Option<Vec<u8>>,
+        /// What the image holds there.
+        expected: Vec<u8>,
+    },
+    /// The data folder went away while a session ran.
+    #[error(
+        "\"{}\" was removed or replaced while the session ran; all {ratings} ratings were written to \"{}\"; find out what removed it before you go on",
+        lost.display(), kept.display()
+    )]
+    Removed {
+        /// The ratings file that went away.
+        lost: PathBuf,
+        /// Where the ratings are.
+        kept: PathBuf,
+        /// How many there are, the last one included.
+        ratings: usize,
     },
     /// The window could not be opened.
     #[error(

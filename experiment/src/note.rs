@@ -36,6 +36,8 @@ pub enum Noted {
     FocusRegained,
     /// A rating was put on disk; the detail says how long that took.
     RatingOnDisk,
+    /// The frames before the first screen; the detail says what they were like.
+    RefreshMeasured,
     /// The screenshot was compared with the images.
     PixelsCompared,
     /// The session ended.
@@ -56,6 +58,7 @@ impl Noted {
             Self::FocusLost => "focus_lost",
             Self::FocusRegained => "focus_regained",
             Self::RatingOnDisk => "rating_on_disk",
+            Self::RefreshMeasured => "refresh_measured",
             Self::PixelsCompared => "pixels_compared",
             Self::Ended => "ended",
         }

@@ -5,8 +5,8 @@
 //! resumed. The file is locked while it is open.
 
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{Seek as _, SeekFrom, Write as _};
-use std::os::unix::fs::OpenOptionsExt as _;
+use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
+use std::os::unix::fs::{MetadataExt as _, OpenOptionsExt as _};
 use std::path::{Path, PathBuf};
 
 use protocols::rating::{RatingRow, header_line, read_ratings};
@@ -84,6 +84,24 @@ impl RatingsLog {
             .map_err(ExperimentError::io("write", &self.path))?;
         self.rated += 1;
         Ok(())
+    }
+
+    /// Whether the file is still where it was opened: a file that was removed takes writes all the same.
+    pub(crate) fn is_in_place(&self) -> bool {
+        let identity = |metadata: std::fs::Metadata| (metadata.dev(), metadata.ino());
+        let here = self.file.metadata().map(identity);
+        let there = std::fs::metadata(&self.path).map(identity);
+        matches!((here, there), (Ok(here), Ok(there)) if here == there)
+    }
+
+    /// Every row written so far, from the open file, wherever that is.
+    pub(crate) fn read_back(&mut self) -> Result<Vec<u8>, ExperimentError> {
+        let mut bytes = Vec::new();
+        self.file
+            .seek(SeekFrom::Start(0))
+            .and_then(|_| self.file.read_to_end(&mut bytes))
+            .map_err(ExperimentError::io("read", &self.path))?;
+        Ok(bytes)
     }
 }
 

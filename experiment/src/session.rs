@@ -288,6 +288,17 @@ impl Session {
         self.view.shown_s.is_some()
     }
 
+    /// The trial that comes first, and the different pictures that it shows.
+    pub(crate) fn first_pictures(&self) -> Option<(&Trial, Vec<Picture>)> {
+        let mut different: Vec<Picture> = Vec::new();
+        for &picture in self.pictures() {
+            if !different.contains(&picture) {
+                different.push(picture);
+            }
+        }
+        self.trials.get(self.trial).map(|trial| (trial, different))
+    }
+
     /// What is typed and marked so far.
     pub fn response(&self) -> &Response {
         &self.response

@@ -11,7 +11,7 @@ use protocols::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::{Ending, ExperimentError, FrameSummary};
+use crate::{Ending, ExperimentError, FrameSummary, Refresh};
 
 /// What the times in the ratings are, in the words that the data can bear.
 pub(crate) const TIMING_SOURCE: &str = "Onset and offset are software times after the buffer swap \
@@ -57,6 +57,16 @@ pub(crate) struct Sidecar {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) model: Option<ModelTraits>,
     pub(crate) sittings: Vec<Sitting>,
+    /// Set when the experimenter closed the session although it is not complete.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) closed: Option<Closed>,
+}
+
+/// When and why a session was closed before its end.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Closed {
+    pub(crate) at: String,
+    pub(crate) reason: String,
 }
 
 /// What makes one simulated observer differ from the next.
@@ -88,6 +98,14 @@ pub(crate) struct Station {
     pub(crate) window_px: [u32; 2],
     pub(crate) monitor_px: [u32; 2],
     pub(crate) pixels_per_point: f32,
+    #[serde(default)]
+    pub(crate) monitor: Option<String>,
+    /// The frames before the first screen.
+    #[serde(default)]
+    pub(crate) refresh: Option<Refresh>,
+    /// How many pixels of the window were found equal to the images before the first screen.
+    #[serde(default)]
+    pub(crate) compared_px: u64,
 }
 
 /// The frames with a test image.
@@ -138,16 +156,34 @@ impl Sidecar {
             timing_source: timing_source.to_owned(),
             model: None,
             sittings: Vec::new(),
+            closed: None,
         }
+    }
+
+    /// Reads a sidecar.
+    pub(crate) fn read(path: &Path) -> Result<Self, ReadError> {
+        let kind = "the sidecar of a ratings file (JSON)";
+        let text =
+            fs::read_to_string(path).map_err(|error| ReadError::from_io(path, kind, error))?;
+        let read = serde_json::from_str(&text);
+        Ok(read.map_err(|error| InputError::new(path, error.to_string(), kind))?)
     }
 
     /// Reads the sidecar of a session that is to be resumed, and checks that nothing has changed since.
     pub(crate) fn read_same_session(path: &Path, expected: &Self) -> Result<Self, ExperimentError> {
-        let kind = "the sidecar of a ratings file (JSON)";
-        let text =
-            fs::read_to_string(path).map_err(|error| ReadError::from_io(path, kind, error))?;
-        let found: Self = serde_json::from_str(&text)
-            .map_err(|error| InputError::new(path, error.to_string(), kind))?;
+        let found = Self::read(path)?;
+        if let Some(closed) = &found.closed {
+            let found = format!(
+                "a session closed as incomplete at {} ({})",
+                closed.at, closed.reason
+            );
+            return Err(
+                InputError::new(path, found, "a session to begin or to resume")
+                    .at("field closed")
+                    .remedy("take another subject code, or another session with --session")
+                    .into(),
+            );
+        }
         let facts = found.identity().into_iter().zip(expected.identity());
         let mut contradictions = facts.filter(|(found, expected)| found != expected);
         match contradictions.next() {

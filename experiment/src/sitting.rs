@@ -6,12 +6,15 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use jiff::Timestamp;
-use protocols::{DataSet, InputError, Observer, Study, SubjectId};
+use protocols::{Access, DataSet, InputError, Observer, Study, SubjectId, write_atomically};
 
 use crate::rating_row::{rating_row, utc};
 use crate::ratings_log::RatingsLog;
-use crate::sidecar::{self, SessionKey, Sidecar, Station, ending_word};
-use crate::{Ending, Event, ExperimentError, Rules, Session, StimulusSet, data_set_files, trials};
+use crate::sidecar::{self, Closed, SessionKey, Sidecar, Station, ending_word};
+use crate::timing_log::TimingLog;
+use crate::{
+    Ending, Event, ExperimentError, Noted, Rules, Session, StimulusSet, data_set_files, trials,
+};
 
 /// Which session is run, and on what.
 #[derive(Clone, Debug)]
@@ -22,6 +25,10 @@ pub struct RunOptions {
     pub stimuli_dir: PathBuf,
     /// The folder of people's ratings.
     pub data_dir: PathBuf,
+    /// Which sitting of the subject, from 1.
+    pub session: u32,
+    /// The monitor by its name, or the one that the desktop chooses.
+    pub monitor: Option<String>,
     /// How many times shorter the times are, to try the session out; `None` for a session that counts.
     pub pilot: Option<f64>,
 }
@@ -70,6 +77,9 @@ pub(crate) struct Sitting {
     log: RatingsLog,
     sidecar: Sidecar,
     sidecar_path: PathBuf,
+    study: Study,
+    data_set: DataSet,
+    timing: TimingLog,
     exposure_requested_s: f64,
     clock_zero: Timestamp,
     is_begun: bool,
@@ -95,7 +105,7 @@ impl Sitting {
     ) -> Result<Self, ExperimentError> {
         let key = SessionKey {
             subject_id: options.subject.clone(),
-            session_id: 1,
+            session_id: options.session,
             observer: Observer::Person,
             pilot_speed: options.pilot,
         };
@@ -114,14 +124,19 @@ impl Sitting {
         }
         let sidecar_path = DataSet::sidecar_path(log.path());
         let fresh = Sidecar::new(study, set.manifest_sha256(), &key);
-        let sidecar = if log.rated() == 0 {
+        let is_fresh = log.rated() == 0 && !is_closed(&sidecar_path);
+        let sidecar = if is_fresh {
             fresh
         } else {
             Sidecar::read_same_session(&sidecar_path, &fresh)?
         };
         let rules = Rules::of(&study.protocol.session).faster(options.pilot.unwrap_or(1.0));
+        let timing = TimingLog::beside(&data_set, log.path(), clock_zero)?;
         Ok(Self {
             session: Session::new(trials, log.rated(), rules),
+            study: study.clone(),
+            data_set,
+            timing,
             log,
             sidecar,
             sidecar_path,
@@ -143,11 +158,15 @@ impl Sitting {
             frames: None,
             focus_losses: 0,
         });
+        self.timing.begin(self.sidecar.sittings.len());
         self.sidecar.write(&self.sidecar_path)
     }
 
-    /// Puts the answer that waits, if one does, on disk; only then the session goes on.
-    pub(crate) fn save(&mut self, at_s: f64) -> Result<(), ExperimentError> {
+    /// Puts the answer that waits, if one does, on disk; only then the session goes on. `now_s` tells the time.
+    ///
+    /// The rating comes first; the frames, the events and the summary in the sidecar follow.
+    pub(crate) fn save(&mut self, now_s: impl Fn() -> f64) -> Result<(), ExperimentError> {
+        let at_s = now_s();
         let Some(answer) = self.session.to_save().copied() else {
             return Ok(());
         };
@@ -160,8 +179,44 @@ impl Sitting {
             self.clock_zero,
         );
         self.log.append(&row)?;
-        self.session.on(Event::Saved, at_s);
-        Ok(())
+        if !self.log.is_in_place() {
+            return Err(self.rescue()?);
+        }
+        let saved_s = now_s();
+        let took = format!("{:.3} ms", (saved_s - at_s) * 1e3);
+        self.session.note(Noted::RatingOnDisk, saved_s, took);
+        self.session.on(Event::Saved, saved_s);
+        self.log_timing()?;
+        if let Some(sitting) = self.sidecar.sittings.last_mut() {
+            sitting.frames = self.session.frame_clock().summary().map(Into::into);
+        }
+        self.sidecar.write(&self.sidecar_path)
+    }
+
+    /// Puts frames and events so far into their tables.
+    fn log_timing(&mut self) -> Result<(), ExperimentError> {
+        let (frames, notes) = (self.session.take_frames(), self.session.take_notes());
+        self.timing.append(&frames, &notes)
+    }
+
+    /// The ratings file was taken away: writes every rating again, beside whatever stands in its place now.
+    fn rescue(&mut self) -> Result<ExperimentError, ExperimentError> {
+        let bytes = self.log.read_back()?;
+        let lost = self.log.path().to_owned();
+        data_set_files::prepare(&self.data_set, &self.study, Observer::Person)?;
+        let kept = if lost.exists() {
+            lost.with_extension("csv.rescued")
+        } else {
+            self.sidecar.write(&self.sidecar_path)?;
+            lost.clone()
+        };
+        write_atomically(&kept, &bytes, Access::Owner)
+            .map_err(ExperimentError::io("write", &kept))?;
+        Ok(ExperimentError::Removed {
+            lost,
+            kept,
+            ratings: self.log.rated(),
+        })
     }
 
     /// Notes on disk how the sitting ended.
@@ -177,6 +232,8 @@ impl Sitting {
             sitting.frames = self.session.frame_clock().summary().map(Into::into);
             sitting.focus_losses = focus_losses;
         }
+        self.session.note(Noted::Ended, at_s, ending_word(ending));
+        self.log_timing()?;
         self.sidecar.write(&self.sidecar_path)?;
         Ok(SessionEnd {
             subject: self.sidecar.key.subject_id.clone(),
@@ -192,5 +249,64 @@ impl Sitting {
     }
 }
 
+/// Whether there is a sidecar that says that its session was closed.
+fn is_closed(sidecar_path: &Path) -> bool {
+    Sidecar::read(sidecar_path).is_ok_and(|sidecar| sidecar.closed.is_some())
+}
+
+/// Closes a session that is not complete, so that it is never resumed; its ratings are kept, and the report
+/// leaves it out by name.
+///
+/// # Errors
+///
+/// There is no such session, it is complete or closed already, another program runs it, or the file cannot be
+/// written.
+pub fn close_session(
+    study: &Study,
+    options: &RunOptions,
+    reason: &str,
+) -> Result<SessionEnd, ExperimentError> {
+    let key = SessionKey {
+        subject_id: options.subject.clone(),
+        session_id: options.session,
+        observer: Observer::Person,
+        pilot_speed: options.pilot,
+    };
+    let data_set = DataSet::new(&options.data_dir, &study.protocol.study);
+    let path = data_set.ratings_path(&key.subject_id, key.session_id, key.task());
+    if !path.exists() {
+        let found = "no such session";
+        return Err(InputError::new(path, found, "a session that was begun")
+            .remedy("check the subject code, --session and --data")
+            .into());
+    }
+    let trials = trials(study, &key.subject_id, key.session_id)?;
+    let log = RatingsLog::open(&data_set, &key, &trials, &study.protocol.stimuli.factors())?;
+    if log.rated() == trials.len() {
+        let found = format!("all {} trials rated", trials.len());
+        return Err(InputError::new(path, found, "a session that is not complete").into());
+    }
+    let sidecar_path = DataSet::sidecar_path(&path);
+    let mut sidecar = Sidecar::read(&sidecar_path)?;
+    if let Some(closed) = &sidecar.closed {
+        let found = format!("closed already at {} ({})", closed.at, closed.reason);
+        return Err(InputError::new(sidecar_path, found, "a session that is open").into());
+    }
+    sidecar.closed = Some(Closed {
+        at: utc(crate::window::utc_now(), 0.0),
+        reason: reason.to_owned(),
+    });
+    sidecar.write(&sidecar_path)?;
+    Ok(SessionEnd {
+        subject: key.subject_id,
+        ending: Ending::Stopped,
+        rated: log.rated(),
+        trials: trials.len(),
+        ratings_path: path,
+    })
+}
+
+#[cfg(test)]
+mod crash;
 #[cfg(test)]
 mod tests;

@@ -13,30 +13,53 @@ use crate::common::{small_study, write_stimuli};
 use crate::{Button, Key, Screen, simulate};
 
 /// A folder with a small study, in which people sit on a clock of 60 frames a second.
-struct Place {
-    folder: tempfile::TempDir,
-    study: Study,
-    options: RunOptions,
+pub(super) struct Place {
+    folder: Folder,
+    pub(super) study: Study,
+    pub(super) options: RunOptions,
+}
+
+/// A folder of this test, or one that another process lent.
+enum Folder {
+    Own(tempfile::TempDir),
+    Lent(PathBuf),
 }
 
 impl Place {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let study = small_study(folder.path());
-        let options = RunOptions {
-            subject: "S1".parse().unwrap(),
-            stimuli_dir: write_stimuli(&study, folder.path()),
-            data_dir: folder.path().join("data"),
-            pilot: None,
-        };
+        write_stimuli(&small_study(folder.path()), folder.path());
+        let place = Self::at(folder.path());
         Self {
-            folder,
-            study,
-            options,
+            folder: Folder::Own(folder),
+            ..place
         }
     }
 
-    fn open(&self) -> Result<Sitting, ExperimentError> {
+    /// The place in a folder that has its study and its stimuli already.
+    pub(super) fn at(folder: &Path) -> Self {
+        Self {
+            study: Study::read(&folder.join("small.toml")).unwrap(),
+            options: RunOptions {
+                subject: "S1".parse().unwrap(),
+                stimuli_dir: folder.join("stimuli"),
+                data_dir: folder.join("data"),
+                pilot: None,
+                session: 1,
+                monitor: None,
+            },
+            folder: Folder::Lent(folder.to_owned()),
+        }
+    }
+
+    pub(super) fn folder(&self) -> &Path {
+        match &self.folder {
+            Folder::Own(folder) => folder.path(),
+            Folder::Lent(folder) => folder,
+        }
+    }
+
+    pub(super) fn open(&self) -> Result<Sitting, ExperimentError> {
         let set = StimulusSet::read(&self.study, &self.options.stimuli_dir)?;
         let mut sitting = Sitting::open(&self.study, &set, &self.options, Timestamp::UNIX_EPOCH)?;
         let station = Station {
@@ -44,13 +67,16 @@ impl Place {
             window_px: [1, 1],
             monitor_px: [1, 1],
             pixels_per_point: 1.0,
+            monitor: None,
+            refresh: None,
+            compared_px: 0,
         };
         sitting.begin(station, 0.0)?;
         Ok(sitting)
     }
 
     /// Rates `count` trials more with 7 and leaves without a farewell, as a crash would.
-    fn rate(&self, count: usize) {
+    pub(super) fn rate(&self, count: usize) {
         let mut sitting = self.open().unwrap();
         let goal = sitting.session.rated() + count;
         for frame in 0..100_000 {
@@ -61,7 +87,7 @@ impl Place {
                     let button = Some(Button::Rating(7));
                     sitting.session.on(Event::Press(button), at_s);
                     sitting.session.on(Event::Release(button), at_s);
-                    sitting.save(at_s).unwrap();
+                    sitting.save(|| at_s).unwrap();
                 }
                 Screen::Instructions | Screen::Resumed | Screen::PracticeOver => {
                     sitting.session.on(Event::Key(Key::Enter), at_s);
@@ -75,7 +101,7 @@ impl Place {
         panic!("the session is stuck at {:?}", sitting.session.screen());
     }
 
-    fn ratings_path(&self) -> PathBuf {
+    pub(super) fn ratings_path(&self) -> PathBuf {
         let data_set = DataSet::new(&self.options.data_dir, &self.study.protocol.study);
         let task = if self.options.pilot.is_some() {
             "pilot"
@@ -85,7 +111,7 @@ impl Place {
         data_set.ratings_path(&self.options.subject, 1, task)
     }
 
-    fn rows(&self) -> Vec<RatingRow> {
+    pub(super) fn rows(&self) -> Vec<RatingRow> {
         read_ratings(&self.ratings_path(), &StimulusPlan::factors())
             .unwrap()
             .rows
@@ -249,7 +275,7 @@ fn a_session_goes_on_only_with_the_protocol_and_the_images_that_it_began_with() 
     assert!(place.refusal().contains("EOF"));
     fs::write(&sidecar_path, &sidecar).unwrap();
 
-    let path = place.folder.path().join("small.toml");
+    let path = place.folder().join("small.toml");
     let text = fs::read_to_string(&path).unwrap();
     fs::write(&path, text + "# changed\n").unwrap();
     place.study = Study::read(&path).unwrap();
@@ -302,4 +328,71 @@ fn the_sidecar_says_what_was_run_and_how_it_ended() {
     );
     assert_eq!(sidecar["sittings"][1]["first_trial_id"], 2);
     assert_eq!(sidecar["sittings"][1]["focus_losses"], 2);
+}
+
+#[test]
+fn a_session_that_was_closed_is_not_resumed_and_the_next_one_is_free() {
+    let mut place = Place::new();
+    place.rate(3);
+    let end = close_session(&place.study, &place.options, "felt ill").unwrap();
+    assert_eq!((end.rated, end.trials), (3, 30));
+    let text = place.refusal();
+    assert!(
+        text.contains("felt ill") && text.contains("--session"),
+        "{text}"
+    );
+    let again = close_session(&place.study, &place.options, "twice").unwrap_err();
+    assert!(
+        again.is_input() && again.to_string().contains("closed already"),
+        "{again}"
+    );
+    place.options.session = 2;
+    let none = close_session(&place.study, &place.options, "none").unwrap_err();
+    assert!(
+        none.is_input() && none.to_string().contains("no such session"),
+        "{none}"
+    );
+    let sitting = place.open().unwrap();
+    assert_eq!(sitting.session.rated(), 0);
+    assert!(
+        sitting
+            .ratings_path()
+            .to_string_lossy()
+            .contains("_session-2_")
+    );
+    let order = trials(&place.study, &place.options.subject, 2).unwrap();
+    assert_eq!(sitting.session.trials(), order);
+}
+
+#[test]
+fn a_session_that_was_killed_has_its_frames_its_events_and_its_summary_so_far() {
+    let place = Place::new();
+    place.rate(3);
+    let path = DataSet::sidecar_path(&place.ratings_path());
+    let sidecar: Value = serde_json::from_slice(&fs::read(path).unwrap()).unwrap();
+    let summary = &sidecar["sittings"][0];
+    assert_eq!(summary["ending"], Value::Null);
+    // Three exposures of 0.2 s at 60 frames a second: 12 intervals each.
+    assert_eq!(summary["frames"]["measured"], 36);
+    assert_eq!(summary["frames"]["median_ms"], 16.667);
+
+    let timing = place.options.data_dir.join("timing");
+    let read = |ending: &str| {
+        let name = format!("study-meyerliu1992_subject-S1_session-1_task-rating_{ending}.csv");
+        let mut rows = csv::Reader::from_path(timing.join(name)).unwrap();
+        let rows: Vec<csv::StringRecord> = rows.records().map(Result::unwrap).collect();
+        rows
+    };
+    let frames = read("frames");
+    let exposures: Vec<_> = frames.iter().filter(|row| &row[2] == "flanked").collect();
+    assert_eq!(exposures.len(), 3);
+    for (trial, row) in (1..).zip(exposures) {
+        assert_eq!(row[1].parse(), Ok(trial));
+        let intervals: Vec<u64> = row[4].split(' ').map(|us| us.parse().unwrap()).collect();
+        assert_eq!(intervals.len(), 11);
+        assert!(intervals.iter().all(|us| us.abs_diff(16_667) <= 1));
+    }
+    let events = read("events");
+    let saved = events.iter().filter(|row| &row[4] == "rating_on_disk");
+    assert_eq!(saved.count(), 3);
 }

@@ -4,20 +4,45 @@ use eframe::egui::{self, CursorIcon, ViewportCommand};
 use protocols::SessionPlan;
 
 use super::Outcome;
+use super::before::Before;
 use super::clock::Clock;
 use super::gate::{Gate, Sizes};
-use super::geometry::{Geometry, needed_px};
+use super::geometry::Geometry;
 use super::input;
+use super::monitor::Monitor;
 use super::paint::{Brush, Pictures};
-use crate::sidecar::Station;
 use crate::sitting::Sitting;
-use crate::{Event, ExperimentError, Key, Screen, SessionEnd};
+use crate::{Event, ExperimentError, Key, Noted, Screen, Session, SessionEnd};
 
 /// What the subject is to see.
 pub(crate) struct Show {
     pub(crate) plan: SessionPlan,
     pub(crate) pictures: Pictures,
     pub(crate) pilot: Option<f64>,
+    /// The monitor by its name.
+    pub(crate) monitor: Option<String>,
+}
+
+/// Whether the window has the keyboard, and how often it lost it while images were shown or awaited.
+#[derive(Debug, Default)]
+struct Focus {
+    is_there: bool,
+    losses: u32,
+}
+
+impl Focus {
+    /// Notes when the window loses the keyboard or gets it again.
+    fn note(&mut self, context: &egui::Context, session: &mut Session, now_s: f64) {
+        let was_there = std::mem::replace(&mut self.is_there, context.input(|input| input.focused));
+        let screen = session.screen();
+        if was_there && !self.is_there {
+            let is_trial = screen == Screen::Blank || screen.picture().is_some();
+            self.losses += u32::from(is_trial);
+            session.note(Noted::FocusLost, now_s, format!("{screen:?}"));
+        } else if !was_there && self.is_there {
+            session.note(Noted::FocusRegained, now_s, format!("{screen:?}"));
+        }
+    }
 }
 
 /// A session in its window.
@@ -26,9 +51,9 @@ pub(crate) struct SessionApp {
     show: Show,
     clock: Clock,
     outcome: Outcome,
-    gate: Option<Gate>,
-    was_focused: bool,
-    focus_losses: u32,
+    before: Before,
+    monitor: Monitor,
+    focus: Focus,
 }
 
 impl SessionApp {
@@ -38,9 +63,9 @@ impl SessionApp {
             show,
             clock,
             outcome,
-            gate: Some(Gate::default()),
-            was_focused: false,
-            focus_losses: 0,
+            before: Before::Sizing(Gate::default()),
+            monitor: Monitor::default(),
+            focus: Focus::default(),
         }
     }
 
@@ -59,32 +84,29 @@ impl SessionApp {
             pointer: context.input(|input| input.pointer.latest_pos()),
         };
         brush.background();
-        if let Some(gate) = &mut self.gate {
+        if !matches!(self.before, Before::Nothing) {
             context.request_repaint();
             context.set_cursor_icon(CursorIcon::None);
-            if !gate.is_open(context, sizes, now_s)? {
+            let (sitting, show) = (&mut self.sitting, &self.show);
+            let frame = (&self.monitor, sizes, now_s);
+            if !self.before.frame(sitting, show, &brush, frame)? {
                 return Ok(None);
             }
-            self.gate = None;
-            check_fit(
-                needed_px(&self.show.plan, self.show.pictures.image_px),
-                sizes,
-            )?;
-            self.sitting.begin(station(sizes), now_s)?;
         }
 
+        self.focus.note(context, &mut self.sitting.session, now_s);
         let screen = self.sitting.session.screen();
         let mut events = input::events(context, geometry, screen, &self.show.plan);
         if context.input(|input| input.viewport().close_requested()) {
             context.send_viewport_cmd(ViewportCommand::CancelClose);
             events.extend((screen != Screen::ConfirmStop).then_some(Event::Key(Key::Escape)));
         }
+        events.push(Event::Frame);
         for event in events {
             self.sitting.session.on(event, now_s);
-            self.sitting.save(now_s)?;
+            self.sitting.save(|| self.clock.now_s())?;
         }
         let session = &mut self.sitting.session;
-        session.on(Event::Frame, now_s);
         if !screen.has_scale() && session.screen().has_scale() {
             let rest = geometry.pointer_rest(&self.show.plan);
             context.send_viewport_cmd(ViewportCommand::CursorPosition(rest));
@@ -92,41 +114,31 @@ impl SessionApp {
         if let Some(ending) = session.ending() {
             return self
                 .sitting
-                .finish(ending, self.focus_losses, now_s)
+                .finish(ending, self.focus.losses, now_s)
                 .map(Some);
         }
         brush.screen(session, &self.show.pictures);
         if let Some(speed) = self.show.pilot {
             brush.pilot(speed);
         }
+        brush.photodiode(session.screen());
         if matches!(session.screen(), Screen::Blank | Screen::Exposure(..)) {
             context.set_cursor_icon(CursorIcon::None);
         }
         if session.needs_frames() {
             context.request_repaint();
         }
-        self.note_focus(context);
         Ok(None)
-    }
-
-    /// Counts how often the window loses the keyboard while images are shown or awaited.
-    fn note_focus(&mut self, context: &egui::Context) {
-        let is_focused = context.input(|input| input.focused);
-        let is_trial = matches!(
-            self.sitting.session.screen(),
-            Screen::Blank | Screen::Exposure(..)
-        );
-        if self.was_focused && !is_focused && is_trial {
-            self.focus_losses += 1;
-        }
-        self.was_focused = is_focused;
     }
 }
 
 impl eframe::App for SessionApp {
-    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
         if self.outcome.borrow().is_some() {
             return;
+        }
+        if !matches!(self.before, Before::Nothing) {
+            self.monitor = Monitor::of(frame);
         }
         let now_s = self.clock.now_s();
         let end = self.frame(ui, now_s).transpose();
@@ -138,25 +150,5 @@ impl eframe::App for SessionApp {
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
         egui::Color32::from_gray(self.show.plan.background_srgb).to_normalized_gamma_f32()
-    }
-}
-
-fn check_fit(needed_px: [u32; 2], sizes: Sizes) -> Result<(), ExperimentError> {
-    let found_px = sizes.window_px;
-    if found_px[0] >= needed_px[0] && found_px[1] >= needed_px[1] {
-        return Ok(());
-    }
-    Err(ExperimentError::TooSmall {
-        found_px,
-        needed_px,
-    })
-}
-
-fn station(sizes: Sizes) -> Station {
-    Station {
-        operating_system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
-        window_px: sizes.window_px,
-        monitor_px: sizes.monitor_px,
-        pixels_per_point: sizes.pixels_per_point,
     }
 }

@@ -97,7 +97,7 @@ impl Geometry {
             Screen::Rating | Screen::RatedExposure(..) => match plan.response {
                 ResponseStyle::Buttons | ResponseStyle::Labelled => self.ratings(plan),
                 ResponseStyle::Continuous => {
-                    vec![(Button::Continue, self.wide_button(0.5, 0.92))]
+                    vec![(Button::Continue, self.wide_button(0.5, 0.89))]
                 }
             },
             Screen::Blank | Screen::Exposure(..) | Screen::Thanks => Vec::new(),
@@ -193,7 +193,7 @@ impl Geometry {
     /// answer is not nearer than any other.
     pub(crate) fn pointer_rest(self, plan: &SessionPlan) -> Pos2 {
         let y = match (plan.response, plan.rating) {
-            (ResponseStyle::Continuous, _) => 0.86,
+            (ResponseStyle::Continuous, _) => 0.96,
             (_, RatingTime::AfterExposure) => 0.62,
             (_, RatingTime::DuringExposure) => 0.97,
         };

@@ -1,11 +1,14 @@
 //! The session in a full-screen window, one image pixel on one pixel of the screen.
 
 mod app;
+mod before;
 mod clock;
 mod gate;
 mod geometry;
 mod input;
+mod monitor;
 mod paint;
+mod proof;
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -19,6 +22,11 @@ use crate::{ExperimentError, RunOptions, SessionEnd, StimulusSet};
 use app::{SessionApp, Show};
 use clock::Clock;
 use paint::Pictures;
+
+/// The present time.
+pub(crate) fn utc_now() -> jiff::Timestamp {
+    Clock::start().zero()
+}
 
 /// What the window leaves behind when it is closed.
 type Outcome = Rc<RefCell<Option<Result<SessionEnd, ExperimentError>>>>;
@@ -51,6 +59,7 @@ pub fn run(study: &Study, options: &RunOptions) -> Result<SessionEnd, Experiment
     };
     let protocol = study.protocol.clone();
     let pilot = options.pilot;
+    let monitor = options.monitor.clone();
     eframe::run_native(
         &title,
         native,
@@ -58,8 +67,9 @@ pub fn run(study: &Study, options: &RunOptions) -> Result<SessionEnd, Experiment
             let context = &creation.egui_ctx;
             let show = Show {
                 plan: protocol.session,
-                pictures: Pictures::upload(context, &set, &protocol.stimuli),
+                pictures: Pictures::upload(context, set, &protocol.stimuli),
                 pilot,
+                monitor,
             };
             let app = SessionApp::new(sitting, show, clock, app_outcome);
             Ok(Box::new(app))

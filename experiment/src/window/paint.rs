@@ -14,13 +14,14 @@ use eframe::egui::{
 use protocols::{Layout, RatingTime, ResponseStyle, SessionPlan, Stimuli, StimulusId};
 
 use super::geometry::{Geometry, Slot};
-use crate::{Button, Response, Screen, Session, StimulusSet};
+use crate::{Button, Picture, Response, Screen, Session, StimulusSet};
 
 const INK: Color32 = Color32::from_gray(12);
 
 /// Every image of the study on the graphics card, from the start, so that no exposure waits for one.
 pub(crate) struct Pictures {
     textures: BTreeMap<StimulusId, TextureHandle>,
+    set: StimulusSet,
     zero_anchor: Option<StimulusId>,
     /// What each image is shown with as the best quality.
     references: BTreeMap<StimulusId, StimulusId>,
@@ -28,7 +29,7 @@ pub(crate) struct Pictures {
 }
 
 impl Pictures {
-    pub(crate) fn upload(context: &Context, set: &StimulusSet, stimuli: &Stimuli) -> Self {
+    pub(crate) fn upload(context: &Context, set: StimulusSet, stimuli: &Stimuli) -> Self {
         let upload = |(id, image): (&StimulusId, &crate::ScreenImage)| {
             let size = image.size_px.map(|pixels| pixels as usize);
             let image = ColorImage::from_rgb(size, &image.rgb);
@@ -42,7 +43,29 @@ impl Pictures {
                 .filter_map(|id| Some((id.clone(), stimuli.reference_of(id)?)))
                 .collect(),
             image_px: set.size_px(),
+            set,
         }
+    }
+
+    /// Which image stands in a slot, if the study has one.
+    pub(crate) fn id<'a>(
+        &'a self,
+        slot: Slot,
+        test_image: &'a StimulusId,
+    ) -> Option<&'a StimulusId> {
+        match slot {
+            Slot::ZeroAnchor => self.zero_anchor.as_ref(),
+            Slot::Test => Some(test_image),
+            Slot::TenAnchor => self.references.get(test_image),
+        }
+    }
+
+    /// The bytes of an image.
+    pub(crate) fn image(
+        &self,
+        id: &StimulusId,
+    ) -> Result<&crate::ScreenImage, protocols::InputError> {
+        self.set.image(id)
     }
 }
 
@@ -73,12 +96,8 @@ impl Brush<'_> {
             Screen::Thanks => self.page(&texts.thanks, 0.5),
             Screen::ConfirmStop => self.line(&texts.stop_question, 40.0, 0.42),
             Screen::Exposure(trial, picture) | Screen::RatedExposure(trial, picture) => {
-                let [width, height] = pictures.image_px.map(|pixels| pixels as f32);
-                let gap_px = self.plan.gap_px as f32;
-                let images = self.geometry.images(picture, vec2(width, height), gap_px);
                 let test_image = &session.trials()[trial].stimulus_id;
-                for (slot, rect) in images {
-                    self.image(slot, rect, test_image, pictures);
+                for rect in self.picture(picture, test_image, pictures) {
                     self.pair_name(session.part(), rect);
                 }
             }
@@ -90,6 +109,10 @@ impl Brush<'_> {
         for (button, rect) in self.geometry.buttons(screen, self.plan) {
             self.button(button, rect, session.pressed());
         }
+    }
+
+    /// The corner for a photodiode: white while the test image stands.
+    pub(crate) fn photodiode(&self, screen: Screen) {
         if self.plan.photodiode {
             let has_test_image = screen
                 .picture()
@@ -97,6 +120,22 @@ impl Brush<'_> {
             let grey = if has_test_image { 255 } else { 0 };
             self.fill(self.geometry.photodiode(), Color32::from_gray(grey));
         }
+    }
+
+    /// The images of a picture; says where they stand.
+    pub(crate) fn picture(
+        &self,
+        picture: Picture,
+        test_image: &StimulusId,
+        pictures: &Pictures,
+    ) -> Vec<Rect> {
+        let [width, height] = pictures.image_px.map(|pixels| pixels as f32);
+        let gap_px = self.plan.gap_px as f32;
+        let images = self.geometry.images(picture, vec2(width, height), gap_px);
+        for (slot, rect) in &images {
+            self.image(*slot, *rect, test_image, pictures);
+        }
+        images.into_iter().map(|(_, rect)| rect).collect()
     }
 
     /// The name of a member of a pair, above it.
@@ -124,11 +163,7 @@ impl Brush<'_> {
     }
 
     fn image(&self, slot: Slot, rect_px: Rect, test_image: &StimulusId, pictures: &Pictures) {
-        let id = match slot {
-            Slot::ZeroAnchor => pictures.zero_anchor.as_ref(),
-            Slot::Test => Some(test_image),
-            Slot::TenAnchor => pictures.references.get(test_image),
-        };
+        let id = pictures.id(slot, test_image);
         if let Some(texture) = id.and_then(|id| pictures.textures.get(id)) {
             let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
             let rect = self.geometry.points(rect_px);
@@ -188,7 +223,7 @@ impl Brush<'_> {
             self.ends(screen);
         }
         if self.plan.rating == RatingTime::DuringExposure {
-            field_place = self.place(0.93, row_y);
+            field_place = self.place(0.9, question_y - 0.08);
         }
         if !response.typed().is_empty() {
             self.typed(response.typed(), field_place);
@@ -321,13 +356,14 @@ impl Brush<'_> {
             Button::Continue => (texts.continue_button.clone(), 32.0),
             Button::Stop => (texts.stop_button.clone(), 32.0),
             Button::Rating(rating) if self.plan.response == ResponseStyle::Labelled => {
-                (self.label(rating), 30.0)
+                (self.label(rating), 27.0)
             }
             Button::Rating(rating) => (rating.to_string(), 40.0),
             Button::Bar(..) => return,
         };
+        let room = 0.94 * rect_px.width();
         self.centred(
-            self.galley(&words, size, f32::INFINITY, Align::Center),
+            self.galley(&words, size, room, Align::Center),
             rect_px.center(),
         );
     }

@@ -1,0 +1,99 @@
+//! Every frame and every event of a session, in two small tables beside the data set's ratings.
+//!
+//! `timing/<session>_frames.csv` has a line for each run of frames with one screen; `timing/<session>_events.csv`
+//! a line for each event. Both grow after each rating and at the end, a whole line at a time, and are not
+//! synced: a crash may cost the frames of the trial that it cut off, never a rating.
+
+use std::fs::OpenOptions;
+use std::io::Write as _;
+use std::os::unix::fs::OpenOptionsExt as _;
+use std::path::{Path, PathBuf};
+
+use jiff::Timestamp;
+use protocols::DataSet;
+
+use crate::rating_row::utc;
+use crate::{ExperimentError, FrameLog, Note, data_set_files};
+
+const FRAMES_HEADER: &str = "sitting,trial_id,screen,began_us,intervals_us\n";
+const EVENTS_HEADER: &str = "sitting,at_us,at_utc,trial_id,event,detail\n";
+
+/// The two tables of one session.
+#[derive(Debug)]
+pub(crate) struct TimingLog {
+    frames: PathBuf,
+    events: PathBuf,
+    clock_zero: Timestamp,
+    /// Which sitting of the session this is, from 1.
+    sitting: usize,
+}
+
+impl TimingLog {
+    /// The tables that belong to a ratings file.
+    pub(crate) fn beside(
+        data_set: &DataSet,
+        ratings: &Path,
+        clock_zero: Timestamp,
+    ) -> Result<Self, ExperimentError> {
+        let folder = data_set.root().join("timing");
+        data_set_files::create_private_folder(&folder)?;
+        let stem = ratings.file_stem().unwrap_or_default().to_string_lossy();
+        let stem = stem.trim_end_matches("_data");
+        Ok(Self {
+            frames: folder.join(format!("{stem}_frames.csv")),
+            events: folder.join(format!("{stem}_events.csv")),
+            clock_zero,
+            sitting: 1,
+        })
+    }
+
+    /// Says which sitting the lines to come belong to.
+    pub(crate) fn begin(&mut self, sitting: usize) {
+        self.sitting = sitting;
+    }
+
+    /// Adds frames and events.
+    pub(crate) fn append(&self, frames: &FrameLog, notes: &[Note]) -> Result<(), ExperimentError> {
+        let sitting = self.sitting;
+        let mut lines = Vec::new();
+        for run in frames.runs() {
+            let intervals: Vec<String> = run.intervals_us.iter().map(u64::to_string).collect();
+            let (trial, screen, began) = (run.trial + 1, run.screen, run.began_us);
+            let intervals = intervals.join(" ");
+            lines.push(format!(
+                "{sitting},{trial},{screen},{began},{intervals}
+"
+            ));
+        }
+        append_lines(&self.frames, FRAMES_HEADER, &lines.concat())?;
+        let mut lines = Vec::new();
+        for note in notes {
+            let at_us = (note.at_s * 1e6).round();
+            let at_utc = utc(self.clock_zero, note.at_s);
+            let detail = note.detail.replace(['"', '\n', '\r'], " ");
+            let (trial, event) = (note.trial + 1, note.event.as_str());
+            lines.push(format!(
+                "{sitting},{at_us},{at_utc},{trial},{event},\"{detail}\"\n"
+            ));
+        }
+        append_lines(&self.events, EVENTS_HEADER, &lines.concat())
+    }
+}
+
+/// Appends lines in one write; a new file begins with the header.
+fn append_lines(path: &Path, header: &str, lines: &str) -> Result<(), ExperimentError> {
+    if lines.is_empty() {
+        return Ok(());
+    }
+    let write = || {
+        let mut file = OpenOptions::new()
+            .append(true)
+            .create(true)
+            .mode(0o600)
+            .open(path)?;
+        let is_new = file.metadata()?.len() == 0;
+        let text = [if is_new { header } else { "" }, lines].concat();
+        file.write_all(text.as_bytes())
+    };
+    write().map_err(ExperimentError::io("write", path))
+}

@@ -1,0 +1,111 @@
+//! What comes before the first screen: the window fills the monitor, its frames are timed, its pixels compared.
+
+use super::app::Show;
+use super::gate::{Gate, Sizes};
+use super::geometry::needed_px;
+use super::monitor::Monitor;
+use super::paint::Brush;
+use super::proof::Proof;
+use crate::sidecar::Station;
+use crate::sitting::Sitting;
+use crate::{ExperimentError, Noted, Refresh};
+
+/// How many intervals between frames are measured before the first screen, and in a trial run.
+const MEASURED_FRAMES: usize = 120;
+const MEASURED_FRAMES_OF_PILOT: usize = 20;
+
+/// What comes before the first screen, one after the other.
+pub(crate) enum Before {
+    /// The window must fill the monitor.
+    Sizing(Gate),
+    /// The frames are timed.
+    Timing { began: Vec<f64> },
+    /// The window is compared with the images.
+    Proving { proof: Proof, refresh: Refresh },
+    /// The session runs.
+    Nothing,
+}
+
+fn check_fit(needed_px: [u32; 2], sizes: Sizes) -> Result<(), ExperimentError> {
+    let found_px = sizes.window_px;
+    if found_px[0] >= needed_px[0] && found_px[1] >= needed_px[1] {
+        return Ok(());
+    }
+    Err(ExperimentError::TooSmall {
+        found_px,
+        needed_px,
+    })
+}
+
+impl Before {
+    /// One frame before the session; true when it may begin.
+    pub(crate) fn frame(
+        &mut self,
+        sitting: &mut Sitting,
+        show: &Show,
+        brush: &Brush<'_>,
+        (monitor, sizes, now_s): (&Monitor, Sizes, f64),
+    ) -> Result<bool, ExperimentError> {
+        let context = brush.painter.ctx();
+        match self {
+            Self::Sizing(gate) => {
+                let is_there = monitor.is_wanted(show.monitor.as_deref(), context)?;
+                if is_there && gate.is_open(context, sizes, now_s)? {
+                    check_fit(needed_px(&show.plan, show.pictures.image_px), sizes)?;
+                    *self = Self::Timing { began: vec![now_s] };
+                }
+            }
+            Self::Timing { began } => {
+                began.push(now_s);
+                let wanted = match show.pilot {
+                    Some(_) => MEASURED_FRAMES_OF_PILOT,
+                    None => MEASURED_FRAMES,
+                };
+                if began.len() > wanted {
+                    let intervals: Vec<f64> =
+                        began.windows(2).map(|pair| pair[1] - pair[0]).collect();
+                    let refresh = Refresh::of(&intervals, monitor.nominal_hz);
+                    *self = Self::Proving {
+                        proof: Proof::of(&sitting.session),
+                        refresh,
+                    };
+                }
+            }
+            Self::Proving { proof, refresh } => {
+                let (geometry, gap_px) = (brush.geometry, show.plan.gap_px);
+                if proof.advance(context, geometry, &show.pictures, gap_px)? {
+                    let station = Station {
+                        compared_px: proof.compared_px(),
+                        refresh: Some(*refresh),
+                        monitor: monitor.name.clone(),
+                        ..station(sizes)
+                    };
+                    let compared = format!("{} pixels equal", proof.compared_px());
+                    let session = &mut sitting.session;
+                    session.note(Noted::RefreshMeasured, now_s, refresh.in_words());
+                    session.note(Noted::PixelsCompared, now_s, compared);
+                    sitting.begin(station, now_s)?;
+                    *self = Self::Nothing;
+                    return Ok(true);
+                }
+                if let Some((picture, test_image)) = proof.picture() {
+                    brush.picture(picture, test_image, &show.pictures);
+                }
+            }
+            Self::Nothing => return Ok(true),
+        }
+        Ok(false)
+    }
+}
+
+fn station(sizes: Sizes) -> Station {
+    Station {
+        monitor: None,
+        refresh: None,
+        compared_px: 0,
+        operating_system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+        window_px: sizes.window_px,
+        monitor_px: sizes.monitor_px,
+        pixels_per_point: sizes.pixels_per_point,
+    }
+}
