@@ -38,6 +38,10 @@ pub(crate) enum Command {
     Run(RunArguments),
     /// Close a session that will never be complete: it is kept, but not resumed.
     Close(CloseArguments),
+    /// Write down this computer's screen and chair, and say where to sit.
+    Station(StationArguments),
+    /// Write people's ratings in the form of another standard.
+    Export(ExportArguments),
     /// Let simulated observers sit the same session.
     Simulate(SimulateArguments),
     /// Analyse the ratings of a study and write the report.
@@ -82,6 +86,9 @@ impl DataFolder {
 pub(crate) struct CheckArguments {
     /// The protocol file, or a scene (TOML, .gltf, .glb, .obj, .ply).
     pub(crate) protocol: PathBuf,
+    /// The measured screen and chair [default: that of `acuity station`, if there is one]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) station: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) stimuli: StimuliFolder,
     #[command(flatten)]
@@ -183,7 +190,10 @@ pub(crate) struct RunArguments {
     /// Which sitting of the subject, from 1.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) session: u32,
-    /// Show the session on the monitor with this name.
+    /// The measured screen and chair [default: that of `acuity station`, if there is one]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) station: Option<PathBuf>,
+    /// Show the session on the monitor with this name [default: that of the station]
     #[arg(long, value_name = "NAME")]
     pub(crate) monitor: Option<String>,
     /// Try the session out, this many times faster; marked PILOT on the screen and in the data.
@@ -204,6 +214,46 @@ pub(crate) struct CloseArguments {
     /// Which sitting of the subject.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) session: u32,
+    #[command(flatten)]
+    pub(crate) data: DataFolder,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct StationArguments {
+    /// The protocol whose angle is wanted.
+    pub(crate) protocol: PathBuf,
+    /// Width of the picture on the screen, without the frame, by a ruler.
+    #[arg(long)]
+    pub(crate) width_mm: f64,
+    /// Pixels of that width: the monitor's native resolution.
+    #[arg(long)]
+    pub(crate) width_px: u32,
+    /// From the subject's eye to the screen [default: where a pixel subtends the protocol's angle]
+    #[arg(long)]
+    pub(crate) distance_cm: Option<f64>,
+    /// Name of the monitor.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) monitor: Option<String>,
+    /// Peak luminance by a meter (ITU-R BT.500 advises 70 to 250 cd/m2 in a laboratory).
+    #[arg(long)]
+    pub(crate) peak_luminance: Option<f64>,
+    /// Lights and surround, in words.
+    #[arg(long)]
+    pub(crate) surround: Option<String>,
+    /// The station's file [default: ~/.config/acuity/station.toml]
+    #[arg(short, long)]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExportArguments {
+    /// The protocol file.
+    pub(crate) protocol: PathBuf,
+    /// New folder for a BIDS data set.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) bids: PathBuf,
+    #[command(flatten)]
+    pub(crate) stimuli: StimuliFolder,
     #[command(flatten)]
     pub(crate) data: DataFolder,
 }

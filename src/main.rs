@@ -14,6 +14,7 @@ mod memory;
 mod render;
 mod replicate;
 mod sit;
+mod station;
 mod stopwatch;
 
 use std::process::ExitCode;
@@ -46,6 +47,8 @@ fn run(command: Command, progress: Progress) -> anyhow::Result<ExitCode> {
         Command::Figures(arguments) => render::figures(&arguments)?,
         Command::Run(arguments) => sit::run(&arguments)?,
         Command::Close(arguments) => sit::close(&arguments)?,
+        Command::Station(arguments) => station::measure(&arguments)?,
+        Command::Export(arguments) => sit::export(&arguments)?,
         Command::Simulate(arguments) => sit::simulate(&arguments, progress)?,
         Command::Report(arguments) => analyse::report(&arguments)?,
         Command::Anova(arguments) => analyse::anova(&arguments)?,

@@ -7,7 +7,9 @@ use experiment::RunOptions;
 use protocols::{DataSet, InputError, Observer, Study};
 use renderer::Scene;
 
-use crate::command_line::{CheckArguments, CloseArguments, RunArguments, SimulateArguments};
+use crate::command_line::{
+    CheckArguments, CloseArguments, ExportArguments, RunArguments, SimulateArguments,
+};
 use crate::console::{self, Progress};
 
 pub(crate) fn check(arguments: &CheckArguments) -> anyhow::Result<ExitCode> {
@@ -23,7 +25,15 @@ pub(crate) fn check(arguments: &CheckArguments) -> anyhow::Result<ExitCode> {
     }
     let stimuli = arguments.stimuli.of(&study);
     let data = arguments.data.of(&study);
-    let missing = experiment::check_ready(&study, &stimuli, &data);
+    let mut missing = experiment::check_ready(&study, &stimuli, &data);
+    match experiment::station_for(&study, arguments.station.as_deref()) {
+        Ok(Some(station)) => console::print(format!(
+            "station: {}",
+            station.advice(study.protocol.viewing)
+        ))?,
+        Ok(None) => console::print("station: not measured (acuity station)")?,
+        Err(error) => missing.push(error.to_string()),
+    }
     if missing.is_empty() {
         console::print("ready")?;
         return Ok(ExitCode::SUCCESS);
@@ -50,13 +60,16 @@ fn check_scene(file: &Path) -> anyhow::Result<ExitCode> {
 
 pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<()> {
     let study = Study::read(&arguments.protocol)?;
+    let station = experiment::station_for(&study, arguments.station.as_deref())?;
+    let measured = station.as_ref().and_then(|station| station.monitor.clone());
     let options = RunOptions {
         subject: arguments.subject.clone(),
         stimuli_dir: arguments.stimuli.of(&study),
         data_dir: arguments.data.of(&study),
         pilot: arguments.pilot,
         session: arguments.session,
-        monitor: arguments.monitor.clone(),
+        monitor: arguments.monitor.clone().or(measured),
+        station,
     };
     let end = experiment::run(&study, &options)?;
     console::print(end)?;
@@ -72,6 +85,7 @@ pub(crate) fn close(arguments: &CloseArguments) -> anyhow::Result<()> {
         pilot: None,
         session: arguments.session,
         monitor: None,
+        station: None,
     };
     let end = experiment::close_session(&study, &options, &arguments.reason)?;
     console::print(format!(
@@ -81,6 +95,16 @@ pub(crate) fn close(arguments: &CloseArguments) -> anyhow::Result<()> {
         end.trials,
         end.ratings_path.display()
     ))?;
+    Ok(())
+}
+
+pub(crate) fn export(arguments: &ExportArguments) -> anyhow::Result<()> {
+    let study = Study::read(&arguments.protocol)?;
+    let stimuli = arguments.stimuli.of(&study);
+    let data = arguments.data.of(&study);
+    let sessions = experiment::export_bids(&study, &stimuli, &data, &arguments.bids)?;
+    let folder = arguments.bids.display();
+    console::print(format!("{sessions} sessions in {folder}"))?;
     Ok(())
 }
 

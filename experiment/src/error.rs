@@ -51,6 +51,16 @@ pub enum ExperimentError {
         /// The size of the monitor.
         monitor_px: [u32; 2],
     },
+    /// The monitor is not the one that was measured.
+    #[error(
+        "found a monitor {found_px} pixels wide, expected the {measured_px} of the station that was measured; choose that monitor (--monitor) and its native resolution, or measure this one: acuity station"
+    )]
+    OtherScreen {
+        /// The width of the monitor.
+        found_px: u32,
+        /// The width that was measured.
+        measured_px: u32,
+    },
     /// There is no monitor with this name.
     #[error(
         "found the monitors {all}, expected one named \"{wanted}\"; name one of those with --monitor"

@@ -11,6 +11,7 @@
 mod common;
 
 mod arrangement;
+mod bids;
 mod button;
 mod data_set_files;
 mod error;
@@ -33,10 +34,12 @@ mod sidecar;
 mod simulate;
 mod simulated_observer;
 mod sitting;
+mod station;
 mod stimulus_set;
 mod timing_log;
 mod window;
 
+pub use bids::export_bids;
 pub use button::{Button, Key};
 pub use error::ExperimentError;
 pub use frame_clock::{FrameClock, FrameSummary};
@@ -52,5 +55,6 @@ pub use rules::Rules;
 pub use session::{Answer, Ending, Event, Screen, Session};
 pub use simulate::{SimulationSummary, simulate};
 pub use sitting::{RunOptions, SessionEnd, close_session};
+pub use station::{DisplayColor, StationFile, station_for};
 pub use stimulus_set::{ScreenImage, StimulusSet};
 pub use window::run;

@@ -11,7 +11,7 @@ use protocols::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::{Ending, ExperimentError, FrameSummary, Refresh};
+use crate::{Ending, ExperimentError, FrameSummary, Refresh, StationFile};
 
 /// What the times in the ratings are, in the words that the data can bear.
 pub(crate) const TIMING_SOURCE: &str = "Onset and offset are software times after the buffer swap \
@@ -103,6 +103,9 @@ pub(crate) struct Station {
     /// The frames before the first screen.
     #[serde(default)]
     pub(crate) refresh: Option<Refresh>,
+    /// The measured screen and chair.
+    #[serde(default)]
+    pub(crate) measured: Option<StationFile>,
     /// How many pixels of the window were found equal to the images before the first screen.
     #[serde(default)]
     pub(crate) compared_px: u64,

@@ -13,7 +13,8 @@ use crate::ratings_log::RatingsLog;
 use crate::sidecar::{self, Closed, SessionKey, Sidecar, Station, ending_word};
 use crate::timing_log::TimingLog;
 use crate::{
-    Ending, Event, ExperimentError, Noted, Rules, Session, StimulusSet, data_set_files, trials,
+    Ending, Event, ExperimentError, Noted, Rules, Session, StationFile, StimulusSet,
+    data_set_files, trials,
 };
 
 /// Which session is run, and on what.
@@ -29,6 +30,8 @@ pub struct RunOptions {
     pub session: u32,
     /// The monitor by its name, or the one that the desktop chooses.
     pub monitor: Option<String>,
+    /// The measured screen and chair, if there are any.
+    pub station: Option<StationFile>,
     /// How many times shorter the times are, to try the session out; `None` for a session that counts.
     pub pilot: Option<f64>,
 }
@@ -309,4 +312,4 @@ pub fn close_session(
 #[cfg(test)]
 mod crash;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

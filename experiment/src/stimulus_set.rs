@@ -86,16 +86,16 @@ impl StimulusSet {
 }
 
 /// Which files a manifest names, by what they are for.
-struct ShownFiles {
+pub(crate) struct ShownFiles {
     size_px: [u32; 2],
     /// What sessions show.
-    files: Vec<(StimulusId, ManifestFile)>,
+    pub(crate) files: Vec<(StimulusId, ManifestFile)>,
     /// What else belongs to the set, and the folder that it is in.
     others: Vec<(PathBuf, ManifestFile)>,
 }
 
 impl ShownFiles {
-    fn of(study: &Study, stimuli_dir: &Path) -> Result<Self, ReadError> {
+    pub(crate) fn of(study: &Study, stimuli_dir: &Path) -> Result<Self, ReadError> {
         match &study.protocol.stimuli {
             Stimuli::Rendered(plan) => {
                 let manifest = Manifest::read(stimuli_dir)?;

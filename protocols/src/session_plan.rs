@@ -32,6 +32,10 @@ pub struct SessionPlan {
     /// Without an answer by then the pictures are shown again.
     #[serde(default)]
     pub longest_response_s: Option<f64>,
+    /// By which part the angle of a pixel at the station may differ from the protocol's; without it any station
+    /// will do.
+    #[serde(default)]
+    pub viewing_tolerance: Option<f64>,
     /// Whether a corner of the screen is white while the test image stands, and black otherwise, for a
     /// photodiode.
     #[serde(default)]
@@ -74,6 +78,7 @@ impl SessionPlan {
         }
         self.response_fault()
             .or_else(|| self.response_time_fault())
+            .or_else(|| self.tolerance_fault())
             .or_else(|| self.order.fault())
     }
 
@@ -106,6 +111,14 @@ impl SessionPlan {
         (is_continuous && self.rating == RatingTime::DuringExposure).then(|| {
             let expected = "\"after-exposure\" with a continuous scale";
             ("session.rating", "\"during-exposure\"".to_owned(), expected)
+        })
+    }
+
+    fn tolerance_fault(&self) -> Option<(&'static str, String, &'static str)> {
+        let tolerance = self.viewing_tolerance?;
+        (!(0.001..=1.0).contains(&tolerance)).then(|| {
+            let expected = "a part from 0.001 to 1, such as 0.02 for 2 %";
+            ("session.viewing_tolerance", tolerance.to_string(), expected)
         })
     }
 

@@ -13,10 +13,10 @@ use crate::common::{small_study, write_stimuli};
 use crate::{Button, Key, Screen, simulate};
 
 /// A folder with a small study, in which people sit on a clock of 60 frames a second.
-pub(super) struct Place {
+pub(crate) struct Place {
     folder: Folder,
-    pub(super) study: Study,
-    pub(super) options: RunOptions,
+    pub(crate) study: Study,
+    pub(crate) options: RunOptions,
 }
 
 /// A folder of this test, or one that another process lent.
@@ -26,7 +26,7 @@ enum Folder {
 }
 
 impl Place {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
         write_stimuli(&small_study(folder.path()), folder.path());
         let place = Self::at(folder.path());
@@ -37,7 +37,7 @@ impl Place {
     }
 
     /// The place in a folder that has its study and its stimuli already.
-    pub(super) fn at(folder: &Path) -> Self {
+    pub(crate) fn at(folder: &Path) -> Self {
         Self {
             study: Study::read(&folder.join("small.toml")).unwrap(),
             options: RunOptions {
@@ -47,19 +47,20 @@ impl Place {
                 pilot: None,
                 session: 1,
                 monitor: None,
+                station: None,
             },
             folder: Folder::Lent(folder.to_owned()),
         }
     }
 
-    pub(super) fn folder(&self) -> &Path {
+    pub(crate) fn folder(&self) -> &Path {
         match &self.folder {
             Folder::Own(folder) => folder.path(),
             Folder::Lent(folder) => folder,
         }
     }
 
-    pub(super) fn open(&self) -> Result<Sitting, ExperimentError> {
+    pub(crate) fn open(&self) -> Result<Sitting, ExperimentError> {
         let set = StimulusSet::read(&self.study, &self.options.stimuli_dir)?;
         let mut sitting = Sitting::open(&self.study, &set, &self.options, Timestamp::UNIX_EPOCH)?;
         let station = Station {
@@ -70,13 +71,14 @@ impl Place {
             monitor: None,
             refresh: None,
             compared_px: 0,
+            measured: None,
         };
         sitting.begin(station, 0.0)?;
         Ok(sitting)
     }
 
     /// Rates `count` trials more with 7 and leaves without a farewell, as a crash would.
-    pub(super) fn rate(&self, count: usize) {
+    pub(crate) fn rate(&self, count: usize) {
         let mut sitting = self.open().unwrap();
         let goal = sitting.session.rated() + count;
         for frame in 0..100_000 {
@@ -101,7 +103,7 @@ impl Place {
         panic!("the session is stuck at {:?}", sitting.session.screen());
     }
 
-    pub(super) fn ratings_path(&self) -> PathBuf {
+    pub(crate) fn ratings_path(&self) -> PathBuf {
         let data_set = DataSet::new(&self.options.data_dir, &self.study.protocol.study);
         let task = if self.options.pilot.is_some() {
             "pilot"
@@ -111,7 +113,7 @@ impl Place {
         data_set.ratings_path(&self.options.subject, 1, task)
     }
 
-    pub(super) fn rows(&self) -> Vec<RatingRow> {
+    pub(crate) fn rows(&self) -> Vec<RatingRow> {
         read_ratings(&self.ratings_path(), &StimulusPlan::factors())
             .unwrap()
             .rows

@@ -12,7 +12,7 @@ use super::input;
 use super::monitor::Monitor;
 use super::paint::{Brush, Pictures};
 use crate::sitting::Sitting;
-use crate::{Event, ExperimentError, Key, Noted, Screen, Session, SessionEnd};
+use crate::{Event, ExperimentError, Key, Noted, Screen, Session, SessionEnd, StationFile};
 
 /// What the subject is to see.
 pub(crate) struct Show {
@@ -21,6 +21,8 @@ pub(crate) struct Show {
     pub(crate) pilot: Option<f64>,
     /// The monitor by its name.
     pub(crate) monitor: Option<String>,
+    /// The measured screen and chair.
+    pub(crate) station: Option<StationFile>,
 }
 
 /// Whether the window has the keyboard, and how often it lost it while images were shown or awaited.

@@ -8,7 +8,7 @@ use super::paint::Brush;
 use super::proof::Proof;
 use crate::sidecar::Station;
 use crate::sitting::Sitting;
-use crate::{ExperimentError, Noted, Refresh};
+use crate::{ExperimentError, Noted, Refresh, StationFile};
 
 /// How many intervals between frames are measured before the first screen, and in a trial run.
 const MEASURED_FRAMES: usize = 120;
@@ -52,6 +52,7 @@ impl Before {
                 let is_there = monitor.is_wanted(show.monitor.as_deref(), context)?;
                 if is_there && gate.is_open(context, sizes, now_s)? {
                     check_fit(needed_px(&show.plan, show.pictures.image_px), sizes)?;
+                    check_station(show.station.as_ref(), sizes)?;
                     *self = Self::Timing { began: vec![now_s] };
                 }
             }
@@ -78,6 +79,7 @@ impl Before {
                         compared_px: proof.compared_px(),
                         refresh: Some(*refresh),
                         monitor: monitor.name.clone(),
+                        measured: show.station.clone(),
                         ..station(sizes)
                     };
                     let compared = format!("{} pixels equal", proof.compared_px());
@@ -98,11 +100,25 @@ impl Before {
     }
 }
 
+/// Whether this is the screen that was measured, at its own resolution.
+fn check_station(station: Option<&StationFile>, sizes: Sizes) -> Result<(), ExperimentError> {
+    match station {
+        Some(station) if station.width_px != sizes.monitor_px[0] => {
+            Err(ExperimentError::OtherScreen {
+                found_px: sizes.monitor_px[0],
+                measured_px: station.width_px,
+            })
+        }
+        _ => Ok(()),
+    }
+}
+
 fn station(sizes: Sizes) -> Station {
     Station {
         monitor: None,
         refresh: None,
         compared_px: 0,
+        measured: None,
         operating_system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
         window_px: sizes.window_px,
         monitor_px: sizes.monitor_px,

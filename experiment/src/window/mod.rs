@@ -60,6 +60,7 @@ pub fn run(study: &Study, options: &RunOptions) -> Result<SessionEnd, Experiment
     let protocol = study.protocol.clone();
     let pilot = options.pilot;
     let monitor = options.monitor.clone();
+    let station = options.station.clone();
     eframe::run_native(
         &title,
         native,
@@ -70,6 +71,7 @@ pub fn run(study: &Study, options: &RunOptions) -> Result<SessionEnd, Experiment
                 pictures: Pictures::upload(context, set, &protocol.stimuli),
                 pilot,
                 monitor,
+                station,
             };
             let app = SessionApp::new(sitting, show, clock, app_outcome);
             Ok(Box::new(app))

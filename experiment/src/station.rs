@@ -1,0 +1,271 @@
+//! The station: how large the screen's pixels are, and where the subject must sit.
+//!
+//! It belongs to a computer, not to a study, so it stands in a file of its own, which every session copies into
+//! its sidecar. A pixel of pitch *p* seen from the distance *d* subtends the angle *a* with `p = d tan(a)`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use protocols::{Access, InputError, ReadError, Study, Viewing, write_atomically};
+use serde::{Deserialize, Serialize};
+
+use crate::ExperimentError;
+
+/// A computer's screen and chair, as they were measured.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StationFile {
+    /// The monitor by the name that the window system gives it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub monitor: Option<String>,
+    /// The width of the picture on the screen, without the frame.
+    pub width_mm: f64,
+    /// The pixels of that width.
+    pub width_px: u32,
+    /// From the eye to the screen.
+    pub distance_cm: f64,
+    /// What the display is taken for: `sRGB` by declaration.
+    pub color: DisplayColor,
+    /// The peak luminance, if it was measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peak_luminance_cd_m2: Option<f64>,
+    /// Lights and surround, in words.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub surround: Option<String>,
+}
+
+/// What the display's colours are taken for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum DisplayColor {
+    /// IEC 61966-2-1 by declaration; nothing was measured.
+    #[default]
+    #[serde(rename = "sRGB, declared")]
+    Srgb,
+}
+
+impl StationFile {
+    /// Where the file stands unless the user says otherwise: `$XDG_CONFIG_HOME/acuity/station.toml`, or
+    /// `~/.config/acuity/station.toml`.
+    pub fn default_path() -> Option<PathBuf> {
+        let variable = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
+        let config = variable("XDG_CONFIG_HOME").map(PathBuf::from);
+        let config = config.or_else(|| Some(PathBuf::from(variable("HOME")?).join(".config")));
+        config.map(|config| config.join("acuity/station.toml"))
+    }
+
+    /// Reads a station.
+    ///
+    /// # Errors
+    ///
+    /// The file is missing, is no station, or a number in it is out of range.
+    pub fn read(path: &Path) -> Result<Self, ReadError> {
+        let kind = "a station (TOML)";
+        let text =
+            fs::read_to_string(path).map_err(|error| ReadError::from_io(path, kind, error))?;
+        let station: Self = toml::from_str(&text).map_err(|error| {
+            InputError::new(path, error.to_string().trim_end(), kind)
+                .remedy("measure the screen again: acuity station")
+        })?;
+        station.check(path)?;
+        Ok(station)
+    }
+
+    /// Writes the station, whole or not at all.
+    ///
+    /// # Errors
+    ///
+    /// A number is out of range, or the system will not take the file.
+    pub fn write(&self, path: &Path) -> Result<(), ExperimentError> {
+        self.check(path)?;
+        if let Some(folder) = path.parent() {
+            fs::create_dir_all(folder).map_err(ExperimentError::io("create", folder))?;
+        }
+        let text = toml::to_string(self).map_err(|error| {
+            InputError::new(path, error.to_string(), "a station that can be written")
+        })?;
+        write_atomically(path, text.as_bytes(), Access::Owner)
+            .map_err(ExperimentError::io("write", path))
+    }
+
+    fn check(&self, path: &Path) -> Result<(), InputError> {
+        let range = |field: &str, found: f64, lowest: f64, highest: f64| {
+            if found.is_finite() && (lowest..=highest).contains(&found) {
+                return Ok(());
+            }
+            let expected = format!("a number from {lowest} to {highest}");
+            Err(InputError::new(path, found.to_string(), expected).at(format!("field {field}")))
+        };
+        range("width_mm", self.width_mm, 50.0, 5000.0)?;
+        range("width_px", f64::from(self.width_px), 320.0, 32_768.0)?;
+        range("distance_cm", self.distance_cm, 10.0, 1000.0)?;
+        let peak = self.peak_luminance_cd_m2.unwrap_or(100.0);
+        range("peak_luminance_cd_m2", peak, 1.0, 10_000.0)
+    }
+
+    /// The width of a pixel.
+    pub fn pixel_pitch_mm(&self) -> f64 {
+        self.width_mm / f64::from(self.width_px)
+    }
+
+    /// The angle that a pixel subtends at this station: `atan(p / d)`.
+    ///
+    /// ```
+    /// // The paper's station: a pitch of 0.33692 mm from 101.6 cm is 0.019 degrees.
+    /// let station = experiment::StationFile {
+    ///     monitor: None,
+    ///     width_mm: 0.336_918_371_154_940_44 * 1280.0,
+    ///     width_px: 1280,
+    ///     distance_cm: 101.6,
+    ///     color: experiment::DisplayColor::Srgb,
+    ///     peak_luminance_cd_m2: None,
+    ///     surround: None,
+    /// };
+    /// assert!((station.degrees_per_pixel() - 0.019).abs() < 1e-12);
+    /// ```
+    pub fn degrees_per_pixel(&self) -> f64 {
+        libm::atan(self.pixel_pitch_mm() / (10.0 * self.distance_cm)).to_degrees()
+    }
+
+    /// How far from this screen a pixel subtends the protocol's angle: `d = p / tan(a)`.
+    pub fn distance_cm_for(&self, viewing: Viewing) -> f64 {
+        self.pixel_pitch_mm() / 10.0 / libm::tan(viewing.degrees_per_pixel.to_radians())
+    }
+
+    /// Where to sit, in words.
+    pub fn advice(&self, viewing: Viewing) -> String {
+        format!(
+            "a pixel is {:.4} mm wide; it subtends the protocol's {} degrees from {:.1} cm (d = p / tan a); from {:.1} cm it subtends {:.5} degrees",
+            self.pixel_pitch_mm(),
+            viewing.degrees_per_pixel,
+            self.distance_cm_for(viewing),
+            self.distance_cm,
+            self.degrees_per_pixel()
+        )
+    }
+
+    /// Whether the station keeps to the study's tolerance, if it has one.
+    ///
+    /// # Errors
+    ///
+    /// The angle of a pixel differs by more than the tolerance.
+    pub fn check_for(&self, study: &Study, path: &Path) -> Result<(), InputError> {
+        let Some(tolerance) = study.protocol.session.viewing_tolerance else {
+            return Ok(());
+        };
+        let wanted = study.protocol.viewing.degrees_per_pixel;
+        let found = self.degrees_per_pixel();
+        if (found / wanted - 1.0).abs() <= tolerance {
+            return Ok(());
+        }
+        let found = format!("{found:.5} degrees per pixel");
+        let expected = format!("{wanted} degrees within {} %", tolerance * 100.0);
+        let remedy = format!(
+            "seat the subject {:.1} cm from the screen and write that down: acuity station",
+            self.distance_cm_for(study.protocol.viewing)
+        );
+        Err(InputError::new(path, found, expected).remedy(remedy))
+    }
+}
+
+/// The station of this computer: the file named, or the default one if it is there.
+///
+/// # Errors
+///
+/// The file cannot be used, the study has a tolerance and there is no file, or the station does not keep to it.
+pub fn station_for(study: &Study, named: Option<&Path>) -> Result<Option<StationFile>, ReadError> {
+    let default = StationFile::default_path().filter(|path| path.exists());
+    let Some(path) = named.map(Path::to_owned).or(default) else {
+        if study.protocol.session.viewing_tolerance.is_none() {
+            return Ok(None);
+        }
+        let expected =
+            "the size of the screen and the distance: the protocol has session.viewing_tolerance";
+        return Err(InputError::new("station.toml", "no station", expected)
+            .remedy("measure the screen: acuity station")
+            .into());
+    };
+    let station = StationFile::read(&path)?;
+    station.check_for(study, &path)?;
+    Ok(Some(station))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::common::small_study;
+
+    fn station() -> StationFile {
+        StationFile {
+            monitor: Some("DP-1".to_owned()),
+            width_mm: 527.04,
+            width_px: 1920,
+            distance_cm: 82.8,
+            color: DisplayColor::Srgb,
+            peak_luminance_cd_m2: Some(120.0),
+            surround: Some("dim, 20 lx".to_owned()),
+        }
+    }
+
+    /// A 24-inch screen of 1920 pixels: 0.2745 mm; 0.02745 / tan(0.019 degrees) = 82.78 cm (bc -l).
+    #[test]
+    fn a_screen_of_24_inches_wants_a_chair_at_82_8_cm() {
+        let folder = tempfile::tempdir().unwrap();
+        let study = small_study(folder.path());
+        let distance = station().distance_cm_for(study.protocol.viewing);
+        assert!((distance - 82.78).abs() < 0.005, "{distance}");
+    }
+
+    #[test]
+    fn a_station_is_read_as_it_was_written_and_what_is_wrong_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("deep/station.toml");
+        let missing = StationFile::read(&path).unwrap_err().to_string();
+        assert!(missing.contains("station.toml") && missing.contains("no such file"));
+        station().write(&path).unwrap();
+        assert_eq!(StationFile::read(&path).unwrap(), station());
+        let text = fs::read_to_string(&path).unwrap();
+        for (good, bad, named) in [
+            ("width_mm = 527.04", "width_mm = 5.0", "width_mm"),
+            ("width_mm = 527.04", "width_mm = nan", "width_mm"),
+            ("width_px = 1920", "", "width_px"),
+            (
+                "distance_cm = 82.8",
+                "distance_cm = \"near\"",
+                "distance_cm",
+            ),
+            ("monitor", "screen", "screen"),
+        ] {
+            assert!(text.contains(good), "{good}");
+            fs::write(&path, text.replacen(good, bad, 1)).unwrap();
+            let error = StationFile::read(&path).unwrap_err().to_string();
+            assert!(
+                error.contains(named) && error.contains("station.toml"),
+                "{error}"
+            );
+        }
+        fs::write(&path, &text[..text.len() / 2]).unwrap();
+        assert!(StationFile::read(&path).is_err());
+    }
+
+    #[test]
+    fn a_tolerance_in_the_protocol_decides_whether_a_session_may_start() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut study = small_study(folder.path());
+        let path = folder.path().join("station.toml");
+        station().write(&path).unwrap();
+        study.protocol.session.viewing_tolerance = Some(0.02);
+        assert!(station_for(&study, Some(&path)).is_ok());
+        let near = StationFile {
+            distance_cm: 60.0,
+            ..station()
+        };
+        near.write(&path).unwrap();
+        let error = station_for(&study, Some(&path)).unwrap_err().to_string();
+        assert!(
+            error.contains("82.8 cm") && error.contains("within 2 %"),
+            "{error}"
+        );
+        study.protocol.session.viewing_tolerance = None;
+        assert_eq!(station_for(&study, Some(&path)).unwrap(), Some(near));
+    }
+}

@@ -1,0 +1,33 @@
+//! `acuity station`: this computer's screen and chair.
+
+use anyhow::Context as _;
+use experiment::{DisplayColor, StationFile};
+use protocols::Study;
+
+use crate::command_line::StationArguments;
+use crate::console;
+
+/// Writes the station down and says where to sit.
+pub(crate) fn measure(arguments: &StationArguments) -> anyhow::Result<()> {
+    let study = Study::read(&arguments.protocol)?;
+    let viewing = study.protocol.viewing;
+    let path = arguments.out.clone().or_else(StationFile::default_path);
+    let path =
+        path.context("found no HOME, expected a folder for the station; name a file with --out")?;
+    let mut station = StationFile {
+        monitor: arguments.monitor.clone(),
+        width_mm: arguments.width_mm,
+        width_px: arguments.width_px,
+        distance_cm: arguments.distance_cm.unwrap_or(viewing.distance_cm),
+        color: DisplayColor::Srgb,
+        peak_luminance_cd_m2: arguments.peak_luminance,
+        surround: arguments.surround.clone(),
+    };
+    if arguments.distance_cm.is_none() {
+        station.distance_cm = (station.distance_cm_for(viewing) * 10.0).round() / 10.0;
+    }
+    station.write(&path)?;
+    console::print(station.advice(viewing))?;
+    console::print(format!("written to {}", path.display()))?;
+    Ok(())
+}
