@@ -85,6 +85,8 @@ impl Place {
             .arg(self.stimuli())
             .arg("--data")
             .arg(self.folder.path().join("data"))
+            // No station of the person who runs the tests.
+            .env("XDG_CONFIG_HOME", self.folder.path())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped());
         command
@@ -255,6 +257,13 @@ fn a_session_that_is_killed_goes_on_and_has_every_rating_once() {
     assert_eq!(sidecar["sittings"][0]["ending"], serde_json::Value::Null);
     assert_eq!(sidecar["sittings"][1]["ending"], "complete");
     assert_eq!(sidecar["sittings"][1]["first_trial_id"], 9);
+    // Each sitting compared the three images with what the window held: 3 x 320 x 320 pixels.
+    for sitting in 0..2 {
+        let station = &sidecar["sittings"][sitting]["station"];
+        assert_eq!(station["compared_px"], 307_200);
+        assert_eq!(station["refresh"]["frames"], 20);
+    }
+    assert!(sidecar["sittings"][0]["frames"]["measured"].as_u64() > Some(0));
 
     let again = place.session(&display, "P2", "40").output().unwrap();
     assert_eq!(again.status.code(), Some(2));

@@ -13,7 +13,9 @@ pub(crate) fn acuity(folder: &Path, arguments: &[&str]) -> Output {
     command
         .current_dir(folder)
         .args(arguments)
-        .env_remove("DISPLAY");
+        .env_remove("DISPLAY")
+        // No station of the person who runs the tests.
+        .env("XDG_CONFIG_HOME", folder);
     command.output().expect("the program starts")
 }
 
