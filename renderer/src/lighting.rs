@@ -3,11 +3,11 @@
 //! Lights without extent cast hard shadows; an area light is sampled at one place in each cell of a grid.
 //! Nothing shines through anything: glass too casts a full shadow.
 
-use crate::geometry::{Ray, Span, Vector};
+use crate::geometry::{Ray, RoundFan, Span, Vector};
 use crate::jitter::Jitter;
 use crate::sampler::ScreenPoint;
 use crate::scene::Scene;
-use crate::scene::light::{AreaLight, Arrival, Source};
+use crate::scene::light::{AreaLight, Arrival, Light, Source};
 use crate::scene::material::Highlight;
 
 /// How far off a surface a new ray starts, so that it does not meet the same place again.
@@ -58,7 +58,31 @@ pub(crate) struct Receiver {
     pub(crate) mirrors: bool,
 }
 
-impl Scene {
+/// The lights of a scene and what stands round them.
+#[derive(Clone, Debug)]
+pub(crate) struct Lighting<'scene> {
+    scene: &'scene Scene,
+    /// For each light without extent what stands between it and any place, where that is worth it.
+    fans: Vec<Option<RoundFan>>,
+}
+
+/// How many cells there are along each side of each face of the box round a point light.
+const FAN_SIDE: u32 = 32;
+
+impl<'scene> Lighting<'scene> {
+    pub(crate) fn new(scene: &'scene Scene) -> Self {
+        let fan = |light: &Light| match light.source {
+            Source::Point { position, .. } => {
+                RoundFan::new(position, FAN_SIDE, scene.shapes.shapes())
+            }
+            Source::Distant { .. } | Source::Area(_) => None,
+        };
+        Self {
+            scene,
+            fans: scene.lights.iter().map(fan).collect(),
+        }
+    }
+
     /// What arrives from one of the lights.
     #[inline]
     pub(crate) fn lit(
@@ -68,16 +92,26 @@ impl Scene {
         receiver: Receiver,
         key: HitKey,
     ) -> Lit {
-        match &self.lights[usize::from(light)].source {
+        let place = usize::from(light);
+        let shapes = &self.scene.shapes;
+        match &self.scene.lights[place].source {
             Source::Area(area) => {
                 let highlight = receiver.highlight.filter(|_| !receiver.mirrors);
                 let receiver = Receiver {
                     highlight,
                     ..receiver
                 };
-                self.lit_by_area(area, surface, receiver, Jitter::new(key.at, key.hit, light))
+                let jitter = Jitter::new(key.at, key.hit, light);
+                self.lit_by_area(area, surface, receiver, jitter)
             }
-            source => self.lit_from(&source.arrival(surface.place), surface, receiver),
+            source => {
+                let arrival = source.arrival(surface.place);
+                let is_blocked = |ray: &Ray, span| match &self.fans[place] {
+                    Some(fan) => fan.is_blocked(ray, span, shapes.shapes()),
+                    None => shapes.is_blocked(ray, span),
+                };
+                lit_from(&arrival, surface, receiver, is_blocked)
+            }
         }
     }
 
@@ -92,12 +126,13 @@ impl Scene {
         if !receiver.has_body && receiver.highlight.is_none() {
             return sum;
         }
+        let is_blocked = |ray: &Ray, span| self.scene.shapes.is_blocked(ray, span);
         // From where the shadow rays start, so that each ends just before the light's own surface.
         let start = surface.lifted();
         for row in 0..light.side {
             for column in 0..light.side {
                 let at = jitter.within([column, row], light.side);
-                let lit = self.lit_from(&light.arrival(start, at), surface, receiver);
+                let lit = lit_from(&light.arrival(start, at), surface, receiver, is_blocked);
                 sum.illuminance += lit.illuminance;
                 sum.highlight += lit.highlight;
             }
@@ -108,31 +143,36 @@ impl Scene {
             highlight: sum.highlight / samples,
         }
     }
+}
 
-    #[inline]
-    fn lit_from(&self, arrival: &Arrival, surface: &Surface, receiver: Receiver) -> Lit {
-        let cos_incidence = arrival.towards.dot(surface.normal);
-        let is_behind = cos_incidence <= 0.0 || arrival.towards.dot(surface.facing) <= 0.0;
-        if is_behind || arrival.illuminance <= 0.0 {
-            return Lit::default();
-        }
-        let glint = receiver.highlight.map_or(0.0, |highlight| {
-            highlight.at(arrival.towards.dot(surface.mirrored))
-        });
-        if !receiver.has_body && glint == 0.0 {
-            return Lit::default();
-        }
-        let shadow_ray = Ray {
-            origin: surface.lifted(),
-            direction: arrival.towards,
-        };
-        let span = Span::up_to(arrival.distance_m);
-        if self.shapes.is_blocked(&shadow_ray, span) {
-            return Lit::default();
-        }
-        Lit {
-            illuminance: arrival.illuminance * cos_incidence,
-            highlight: arrival.illuminance * glint,
-        }
+/// What a surface makes of an arrival, unless the shadow ray is blocked.
+#[inline]
+fn lit_from(
+    arrival: &Arrival,
+    surface: &Surface,
+    receiver: Receiver,
+    is_blocked: impl Fn(&Ray, Span) -> bool,
+) -> Lit {
+    let cos_incidence = arrival.towards.dot(surface.normal);
+    let is_behind = cos_incidence <= 0.0 || arrival.towards.dot(surface.facing) <= 0.0;
+    if is_behind || arrival.illuminance <= 0.0 {
+        return Lit::default();
+    }
+    let glint = receiver.highlight.map_or(0.0, |highlight| {
+        highlight.at(arrival.towards.dot(surface.mirrored))
+    });
+    if !receiver.has_body && glint == 0.0 {
+        return Lit::default();
+    }
+    let shadow_ray = Ray {
+        origin: surface.lifted(),
+        direction: arrival.towards,
+    };
+    if is_blocked(&shadow_ray, Span::up_to(arrival.distance_m)) {
+        return Lit::default();
+    }
+    Lit {
+        illuminance: arrival.illuminance * cos_incidence,
+        highlight: arrival.illuminance * glint,
     }
 }

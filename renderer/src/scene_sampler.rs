@@ -6,8 +6,8 @@
 use arrayvec::ArrayVec;
 use protocols::{Channel, Quadrature};
 
-use crate::geometry::{Hit, Ray, Span, Vector};
-use crate::lighting::{HitKey, LIFT_M, Receiver, Surface};
+use crate::geometry::{Fan, Hit, Ray, Span, Vector};
+use crate::lighting::{HitKey, LIFT_M, Lighting, Receiver, Surface};
 use crate::ray_tree::RayTree;
 use crate::sampler::{Sampler, ScreenPoint};
 use crate::scene::Scene;
@@ -25,11 +25,17 @@ const MAX_DEPTH: u32 = 8;
 /// No ray tree has more hits; the weaker rays of a hit are the ones left out.
 const MAX_HITS: usize = 32;
 
+/// No more cells along a side of the view.
+const VIEW_CELLS: u32 = 80;
+
 /// A scene, the wavelengths at which it carries light, and the shape of its picture.
 #[derive(Clone, Debug)]
 pub struct SceneSampler<'scene> {
     scene: &'scene Scene,
     shader: Shader,
+    lighting: Lighting<'scene>,
+    /// What the camera may see where, if that is worth it.
+    view: Option<Fan>,
     aspect: f64,
 }
 
@@ -50,10 +56,15 @@ type Beams = ArrayVec<Beam, MAX_HITS>;
 impl<'scene> SceneSampler<'scene> {
     pub(crate) fn new(scene: &'scene Scene, quadrature: Quadrature, size_px: [u32; 2]) -> Self {
         let [width, height] = size_px.map(f64::from);
+        let aspect = width / height;
+        let pyramid = scene.camera.pyramid(aspect);
+        let cells = size_px.map(|size| size.clamp(1, VIEW_CELLS));
         Self {
             scene,
             shader: Shader::new(scene, &WavelengthRule::new(quadrature)),
-            aspect: width / height,
+            lighting: Lighting::new(scene),
+            view: Fan::new(&pyramid, cells, scene.shapes.shapes()),
+            aspect,
         }
     }
 
@@ -68,11 +79,19 @@ impl<'scene> SceneSampler<'scene> {
         self.shader.shade_by_wavelength(tree, channel)
     }
 
+    #[inline]
+    fn nearest(&self, beam: &Beam, at: ScreenPoint) -> Option<(u32, Hit)> {
+        let shapes = &self.scene.shapes;
+        match &self.view {
+            Some(view) if beam.depth == 1 => view.nearest((at.x, at.y), &beam.ray, shapes.shapes()),
+            _ => shapes.nearest(&beam.ray, Span::up_to(f64::INFINITY)),
+        }
+    }
+
     /// Adds what a ray finds to the tree, and the rays that go on from there to `beams`.
     fn follow(&self, beam: &Beam, at: ScreenPoint, tree: &mut RayTree, beams: &mut Beams) {
         let scene = self.scene;
-        let nearest = scene.shapes.nearest(&beam.ray, Span::up_to(f64::INFINITY));
-        let Some((index, hit)) = nearest else {
+        let Some((index, hit)) = self.nearest(beam, at) else {
             return;
         };
         tree.count_hit();
@@ -104,8 +123,7 @@ impl<'scene> SceneSampler<'scene> {
             Some(Mirror::Coat { refractive_index }) => {
                 let cos_incidence = surface.mirrored.dot(surface.normal).clamp(0.0, 1.0);
                 let share = fresnel_reflectance(cos_incidence, refractive_index);
-                let ray = surface.mirrored_ray();
-                beam.send(ray, (share, 1.0), beam.tint, beams);
+                beam.send(surface.mirrored_ray(), (share, 1.0), beam.tint, beams);
                 1.0 - share
             }
             Some(Mirror::Metal { reflectance, peak }) => {
@@ -205,7 +223,7 @@ impl<'scene> SceneSampler<'scene> {
         };
         let ambient = self.shader.ambient();
         for light in 0..ambient {
-            let lit = self.scene.lit(light, surface, receiver, key);
+            let lit = self.lighting.lit(light, surface, receiver, key);
             if receiver.has_body {
                 add(tree, light, lit.illuminance);
             }

@@ -57,6 +57,25 @@ impl Bounds {
         (self.low + self.high) * 0.5
     }
 
+    /// How far a place is from the box; 0 inside.
+    pub(crate) fn distance_m(&self, place: Vector) -> f64 {
+        let nearest = place.max(self.low).min(self.high);
+        (place - nearest).length()
+    }
+
+    /// The eight corners.
+    pub(crate) fn corners(&self) -> [Vector; 8] {
+        let (low, high) = (self.low, self.high);
+        std::array::from_fn(|corner| {
+            let pick = |bit: usize, low: f64, high: f64| if corner & bit == 0 { low } else { high };
+            Vector::new(
+                pick(1, low.x, high.x),
+                pick(2, low.y, high.y),
+                pick(4, low.z, high.z),
+            )
+        })
+    }
+
     /// Where the ray enters the box, if it does so within the span.
     ///
     /// `inverse` holds the reciprocals of the ray's direction.

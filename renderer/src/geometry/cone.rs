@@ -34,6 +34,12 @@ impl Cone {
         Bounds::of_discs(axis, [(self.base, self.radius_m), (apex, 0.0)])
     }
 
+    /// Balls round the base and the apex.
+    pub(crate) fn ends(&self) -> [(Vector, f64); 2] {
+        let apex = self.base + self.frame.axis * self.height_m;
+        [(self.base, self.radius_m), (apex, 0.0)]
+    }
+
     #[inline]
     pub(crate) fn hit(&self, ray: &Ray, span: Span) -> Option<Hit> {
         let axis = self.frame.axis;

@@ -51,6 +51,14 @@ impl Cuboid {
         Bounds::of_corners(self.center - extent, self.center + extent)
     }
 
+    /// The eight corners.
+    pub(crate) fn corners(&self) -> [Vector; 8] {
+        let half = self.half_size;
+        Bounds::of_corners(-half, half)
+            .corners()
+            .map(|corner| self.center + self.world(corner))
+    }
+
     #[inline]
     pub(crate) fn hit(&self, ray: &Ray, span: Span) -> Option<Hit> {
         let origin = self.local(ray.origin - self.center);

@@ -29,6 +29,12 @@ impl Cylinder {
         Bounds::of_discs(axis, [(self.base, self.radius_m), (top, self.radius_m)])
     }
 
+    /// Balls round the two ends.
+    pub(crate) fn ends(&self) -> [(Vector, f64); 2] {
+        let top = self.base + self.frame.axis * self.height_m;
+        [(self.base, self.radius_m), (top, self.radius_m)]
+    }
+
     #[inline]
     pub(crate) fn hit(&self, ray: &Ray, span: Span) -> Option<Hit> {
         let axis = self.frame.axis;

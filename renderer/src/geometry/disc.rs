@@ -24,6 +24,11 @@ impl Disc {
         Bounds::of_discs(self.frame.axis, [(self.center, self.radius_m); 2])
     }
 
+    /// A ball round the disc.
+    pub(crate) fn ball(&self) -> (Vector, f64) {
+        (self.center, self.radius_m)
+    }
+
     #[inline]
     pub(crate) fn hit(&self, ray: &Ray, span: Span) -> Option<Hit> {
         let normal = self.frame.axis;

@@ -42,7 +42,6 @@ impl Hierarchy {
     }
 
     /// All shapes, by their indices.
-    #[cfg(test)]
     pub(crate) fn shapes(&self) -> &[Shape] {
         &self.shapes
     }

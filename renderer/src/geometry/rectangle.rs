@@ -33,10 +33,22 @@ impl Rectangle {
         one.joined(&Bounds::of_corners(self.corner + right, self.corner + top))
     }
 
+    /// The four corners, one after another round it.
+    pub(crate) fn corners(&self) -> [Vector; 4] {
+        let (right, top) = (self.u * self.width_m, self.v * self.height_m);
+        let corner = self.corner;
+        [corner, corner + right, corner + right + top, corner + top]
+    }
+
     #[inline]
     pub(crate) fn hit(&self, ray: &Ray, span: Span) -> Option<Hit> {
         let slope = ray.direction.dot(self.normal);
-        let distance_m = (self.corner - ray.origin).dot(self.normal) / slope;
+        let rise_m = (self.corner - ray.origin).dot(self.normal);
+        // The plane is behind the ray; known without a division.
+        if rise_m * slope <= 0.0 {
+            return None;
+        }
+        let distance_m = rise_m / slope;
         if !span.holds(distance_m) {
             return None;
         }

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    Bounds, Cone, Cuboid, Cylinder, Disc, Ground, Hit, Mesh, Part, Ray, Rectangle, Span, Sphere,
-    SurfacePoint, Vector,
+    Bounds, Cone, Cuboid, Cylinder, Disc, Ground, Hit, Hull, Mesh, Part, Ray, Rectangle, Span,
+    Sphere, SurfacePoint, Vector,
 };
 
 /// One shape.
@@ -32,6 +32,33 @@ impl Shape {
             Self::Rectangle(rectangle) => Some(rectangle.bounds()),
             Self::Ground(_) => None,
             Self::Mesh(mesh) => mesh.bounds(),
+        }
+    }
+
+    /// Balls whose convex hull holds the shape; none for one without end.
+    pub(crate) fn hull(&self) -> Hull {
+        let corners = |corners: &[Vector]| corners.iter().map(|&c| (c, 0.0)).collect();
+        match self {
+            Self::Sphere(sphere) => [(sphere.center, sphere.radius_m)].into_iter().collect(),
+            Self::Cylinder(cylinder) => cylinder.ends().into_iter().collect(),
+            Self::Cone(cone) => cone.ends().into_iter().collect(),
+            Self::Disc(disc) => [disc.ball()].into_iter().collect(),
+            Self::Rectangle(rectangle) => corners(&rectangle.corners()),
+            Self::Cuboid(cuboid) => corners(&cuboid.corners()),
+            Self::Ground(_) => Hull::new(),
+            Self::Mesh(mesh) => mesh
+                .bounds()
+                .map_or(Hull::new(), |bounds| corners(&bounds.corners())),
+        }
+    }
+
+    /// A place on a flat shape and its normal.
+    pub(crate) fn plane(&self) -> Option<(Vector, Vector)> {
+        match self {
+            Self::Disc(disc) => Some((disc.ball().0, disc.normal())),
+            Self::Rectangle(rectangle) => Some((rectangle.corners()[0], rectangle.normal())),
+            Self::Ground(ground) => Some((Vector::new(0.0, 0.0, ground.height_m), Vector::UP)),
+            _ => None,
         }
     }
 
@@ -130,7 +157,7 @@ impl Shape {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Hierarchy;
+    use super::super::{Fan, Hierarchy, Pyramid, RoundFan};
     use super::*;
 
     /// A stream of numbers from 0 to 1 that is the same everywhere: Knuth's MMIX generator.
@@ -302,9 +329,8 @@ mod tests {
         assert!(first_hit(&rectangle, &down(-0.001, 0.2)).is_none());
     }
 
-    #[test]
-    fn the_hierarchy_finds_what_trying_every_shape_finds() {
-        let mut stream = Stream(3);
+    /// Six hundred shapes of all kinds over a ground, one of them twice.
+    fn many(stream: &mut Stream) -> Vec<Shape> {
         let mut shapes = vec![Shape::Ground(Ground { height_m: -1.0 })];
         for _ in 0..100 {
             let (one, radius_m) = (stream.place(2.0), 0.02 + 0.2 * stream.unit());
@@ -327,20 +353,74 @@ mod tests {
         }
         // The same rectangle twice: of equal hits the first shape's counts.
         shapes.push(shapes[6].clone());
+        shapes
+    }
+
+    /// The plain way: every shape in its order.
+    fn by_trying_all(shapes: &[Shape], ray: &Ray) -> Option<(u32, Hit)> {
+        let tried = (0..)
+            .zip(shapes)
+            .filter_map(|(index, shape)| first_hit(shape, ray).map(|hit| (index, hit)));
+        tried.reduce(|best: (u32, Hit), next| {
+            if next.1.distance_m < best.1.distance_m {
+                next
+            } else {
+                best
+            }
+        })
+    }
+
+    #[test]
+    fn a_fan_finds_what_trying_every_shape_finds() {
+        let mut stream = Stream(4);
+        let shapes: Vec<Shape> = many(&mut stream).into_iter().step_by(3).collect();
+        let apex = Vector::new(2.9, -3.1, 2.7);
+        let forward = (Vector::default() - apex).normalized();
+        let right = forward.cross(Vector::UP).normalized();
+        let (right, up) = (right * 0.4, right.cross(forward) * 0.3);
+        let pyramid = Pyramid {
+            apex,
+            forward,
+            right,
+            up,
+        };
+        let fan = Fan::new(&pyramid, [40, 30], &shapes).unwrap();
+        let round = RoundFan::new(apex, 32, &shapes).unwrap();
+        let (mut hits, mut shadows) = (0, 0);
+        for _ in 0..20_000 {
+            let (s, t) = (stream.unit(), stream.unit());
+            let direction = forward + right * (2.0 * s - 1.0) + up * (1.0 - 2.0 * t);
+            let ray = Ray {
+                origin: apex,
+                direction: direction.normalized(),
+            };
+            let nearest = by_trying_all(&shapes, &ray);
+            assert_eq!(fan.nearest((s, t), &ray, &shapes), nearest);
+            hits += u32::from(nearest.is_some());
+            let place = stream.place(3.0);
+            let path = apex - place;
+            let shadow_ray = Ray {
+                origin: place + stream.place(5e-7),
+                direction: path.normalized(),
+            };
+            let span = Span::up_to(path.length());
+            let expected = shapes.iter().any(|shape| shape.is_hit(&shadow_ray, span));
+            assert_eq!(round.is_blocked(&shadow_ray, span, &shapes), expected);
+            shadows += u32::from(expected);
+        }
+        assert!(hits > 2_000, "only {hits} hits");
+        assert!((2_000..18_000).contains(&shadows), "{shadows} shadows");
+    }
+
+    #[test]
+    fn the_hierarchy_finds_what_trying_every_shape_finds() {
+        let mut stream = Stream(3);
+        let shapes = many(&mut stream);
         let hierarchy = Hierarchy::over(shapes.clone());
         let mut hits = 0;
         for _ in 0..20_000 {
             let ray = stream.ray();
-            let tried = (0..)
-                .zip(&shapes)
-                .filter_map(|(index, shape)| first_hit(shape, &ray).map(|hit| (index, hit)));
-            let nearest = tried.reduce(|best: (u32, Hit), next| {
-                if next.1.distance_m < best.1.distance_m {
-                    next
-                } else {
-                    best
-                }
-            });
+            let nearest = by_trying_all(&shapes, &ray);
             let span = Span::up_to(f64::INFINITY);
             assert_eq!(hierarchy.nearest(&ray, span), nearest);
             assert_eq!(hierarchy.is_blocked(&ray, span), nearest.is_some());

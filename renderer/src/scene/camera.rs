@@ -1,6 +1,6 @@
 //! A pinhole camera.
 
-use crate::geometry::{Ray, Vector};
+use crate::geometry::{Pyramid, Ray, Vector};
 use crate::sampler::ScreenPoint;
 
 /// A camera: where it stands and its screen at a distance of 1 m.
@@ -34,6 +34,16 @@ impl Camera {
     /// Where it stands.
     pub(crate) fn position(&self) -> Vector {
         self.position
+    }
+
+    /// What the camera sees.
+    pub(crate) fn pyramid(&self, aspect: f64) -> Pyramid {
+        Pyramid {
+            apex: self.position,
+            forward: self.forward,
+            right: self.right * (aspect * self.half_height),
+            up: self.up * self.half_height,
+        }
     }
 
     /// The ray through a point of a screen that is `aspect` times as wide as high.

@@ -1,0 +1,96 @@
+//! How many samples a second of CPU time buys: intersecting, shading, and the tree's own work.
+//!
+//! `cargo bench -p renderer --bench trace -- SCENE ...` traces each scene on one thread at 320 × 320 pixels,
+//! 140K rays, 16 bands, and prints nanoseconds a sample and samples a CPU second.
+#![expect(clippy::print_stdout, reason = "a bench prints what it measured")]
+
+mod clock;
+
+use std::hint::black_box;
+use std::path::Path;
+
+use clock::least_secs;
+use protocols::{Channel, PerChannel, Quadrature, RefinementDriver};
+use rayon::ThreadPoolBuilder;
+use renderer::{RayTree, Reach, RendererError, Sampler as _, Scene, TracePlan, trace};
+
+const SIZE_PX: [u32; 2] = [320, 320];
+const RAYS: usize = 140_000;
+const ROUNDS: usize = 5;
+
+fn main() -> Result<(), RendererError> {
+    let arguments = std::env::args().skip(1);
+    let mut scenes: Vec<String> = arguments.filter(|a| !a.starts_with("--")).collect();
+    if scenes.is_empty() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../stimuli/scenes/");
+        scenes.push(format!("{folder}opponent-solids.toml"));
+    }
+    let pool = ThreadPoolBuilder::new().num_threads(1).build();
+    let pool = pool.unwrap_or_else(|error| unreachable!("a thread: {error}"));
+    for scene in &scenes {
+        pool.install(|| measure(Path::new(scene)))?;
+    }
+    Ok(())
+}
+
+fn measure(path: &Path) -> Result<(), RendererError> {
+    let scene = Scene::read(path)?;
+    let set_up_secs = least_secs(3, || {
+        black_box(scene.sampler(Quadrature::Bands(16), SIZE_PX));
+    });
+    let sampler = scene.sampler(Quadrature::Bands(16), SIZE_PX);
+    let plan = TracePlan {
+        seed: 1992,
+        size_px: SIZE_PX,
+        min_depth: 8,
+        driver: RefinementDriver::A,
+        stops: PerChannel::from_fn(|_| Reach::rays(RAYS)),
+    };
+    let tree = trace(&sampler, &plan, &|_, _| ());
+    let points = tree.points();
+    let mut trees = vec![RayTree::default(); RAYS];
+    for (&point, tree) in points.iter().zip(&mut trees) {
+        sampler.intersect(point, tree);
+    }
+    let hits: u32 = trees.iter().map(RayTree::hits).sum();
+    let nanoseconds = |secs: f64| 1e9 * secs / RAYS as f64;
+    let mut one = RayTree::default();
+    let intersect = nanoseconds(least_secs(ROUNDS, || {
+        for &point in &points {
+            sampler.intersect(point, &mut one);
+            black_box(&one);
+        }
+    }));
+    let shade = Channel::ALL.map(|channel| {
+        // The clock's ticks are too long for a single pass.
+        let passes = 40;
+        let secs = least_secs(ROUNDS, || {
+            for _ in 0..passes {
+                for tree in &trees {
+                    black_box(sampler.shade(tree, channel));
+                }
+            }
+        });
+        nanoseconds(secs / f64::from(passes))
+    });
+    let whole = nanoseconds(least_secs(ROUNDS, || {
+        black_box(trace(&sampler, &plan, &|_, _| ()));
+    }));
+    let upkeep = whole - intersect - shade.iter().sum::<f64>();
+    println!(
+        "{}: {:.2} hits a sample; set-up {:.1} ms",
+        path.display(),
+        f64::from(hits) / RAYS as f64,
+        1e3 * set_up_secs
+    );
+    println!(
+        "  intersect {intersect:.0} ns, shade A {:.1}, C1 {:.1}, C2 {:.1} ns",
+        shade[0], shade[1], shade[2]
+    );
+    println!(
+        "  the tree's own work {upkeep:.0} ns, {:.0}% of {whole:.0} ns",
+        100.0 * upkeep / whole
+    );
+    println!("  {:.2} M samples a CPU second", 1e3 / whole);
+    Ok(())
+}
