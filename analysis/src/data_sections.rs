@@ -1,6 +1,6 @@
 //! The sections of a report that say how good the data are and where they come from.
 
-use protocols::Observer;
+use protocols::{Observer, Stimuli, Study};
 
 use crate::page::{Table, escaped};
 use crate::sections::Sections;
@@ -104,14 +104,29 @@ impl Sections<'_> {
             .file_name()
             .map_or_else(String::new, |name| escaped(&name.to_string_lossy()));
         let entries = [
-            ("Protocol", format!("{protocol}, SHA-256 <code>{}</code>", self.study.sha256)),
-            ("Ratings", format!("{} files, SHA-256 of their digests <code>{}</code>", self.ratings.sessions.len(), self.ratings.sha256())),
-            ("Program", format!("Acuity {}{}", env!("CARGO_PKG_VERSION"), self.taken_with())),
+            (
+                "Protocol",
+                format!("{protocol}, SHA-256 <code>{}</code>", self.study.sha256),
+            ),
+            (
+                "Ratings",
+                format!(
+                    "{} files, SHA-256 of their digests <code>{}</code>",
+                    self.ratings.sessions.len(),
+                    self.ratings.sha256()
+                ),
+            ),
+            (
+                "Program",
+                format!("Acuity {}{}", env!("CARGO_PKG_VERSION"), self.taken_with()),
+            ),
             (
                 "Files",
-                "<code>anova.json</code>, <code>anova.csv</code>, <code>means.csv</code>, <code>figure-10.svg</code>, \
-                 <code>figure-10.png</code> beside this page"
-                    .to_owned(),
+                format!(
+                    "<code>anova.json</code>, <code>anova.csv</code>, <code>means.csv</code>, <code>{0}.svg</code>, \
+                     <code>{0}.png</code> beside this page",
+                    figure_name(self.study)
+                ),
             ),
         ];
         let list: Vec<String> = (entries.iter())
@@ -121,6 +136,14 @@ impl Sections<'_> {
             "<section>\n<h2>Where this comes from</h2>\n<dl>\n{}</dl>\n</section>\n",
             list.concat()
         )
+    }
+}
+
+/// The name of the figure's files: the paper's number for the paper's figure.
+pub(crate) fn figure_name(study: &Study) -> &'static str {
+    match study.protocol.stimuli {
+        Stimuli::Rendered(_) => "figure-10",
+        Stimuli::Pictures(_) => "figure",
     }
 }
 

@@ -6,12 +6,16 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use protocols::{Access, Observer, Study, write_atomically};
+use protocols::{Access, Observer, Stimuli, Study, write_atomically};
 
 use crate::anova_table::{quoted, shortest};
+use crate::cell_figure::CellFigure;
+use crate::data_sections::figure_name;
 use crate::figure::{Figure, Palette};
 use crate::page::page;
 use crate::picture::png_from_svg;
+use crate::picture_analysis::PictureAnalysis;
+use crate::picture_sections;
 use crate::sections::Sections;
 use crate::study_analysis::StudyAnalysis;
 use crate::study_ratings::{Pilots, StudyRatings};
@@ -38,7 +42,7 @@ pub struct ReportSummary {
 }
 
 /// Analyses the ratings of `study` in `data_dir` and writes the report into `out_dir`: `report.html`,
-/// `anova.json`, `anova.csv`, `means.csv`, `figure-10.svg`, `figure-10.png`.
+/// `anova.json`, `anova.csv`, `means.csv`, `figure-10.svg`, `figure-10.png` (for own pictures `figure.svg` and `.png`).
 ///
 /// Where no `out_dir` is named, simulated observers have a folder of their own, so that their report never
 /// takes the place of people's.
@@ -54,7 +58,40 @@ pub fn report(
     pilots: Pilots,
 ) -> Result<ReportSummary, AnalysisError> {
     let ratings = StudyRatings::read(study, data_dir, pilots)?;
-    let analysis = StudyAnalysis::new(study, &ratings)?;
+    let Contents { anova_of, files } = match study.protocol.stimuli {
+        Stimuli::Rendered(_) => of_rendered(study, &ratings)?,
+        Stimuli::Pictures(_) => of_pictures(study, &ratings)?,
+    };
+    let out_dir = out_dir.map_or_else(
+        || study.default_report_dir(ratings.observer),
+        Path::to_owned,
+    );
+    let mut written = Vec::new();
+    for (name, bytes) in files {
+        let file = out_dir.join(name);
+        if let Err(source) = write_atomically(&file, &bytes, Access::Owner) {
+            return Err(AnalysisError::Write { file, source });
+        }
+        written.push(file);
+    }
+    Ok(ReportSummary {
+        page: out_dir.join("report.html"),
+        files: written,
+        observer: ratings.observer,
+        n_subjects: anova_of.subjects.len(),
+        anova: anova_of.anova,
+        warnings: ratings.warnings,
+    })
+}
+
+/// The files of a report and the analysis that they are of.
+struct Contents {
+    anova_of: StudyAnalysis,
+    files: Vec<(String, Vec<u8>)>,
+}
+
+fn of_rendered(study: &Study, ratings: &StudyRatings) -> Result<Contents, AnalysisError> {
+    let analysis = StudyAnalysis::new(study, ratings)?;
     let who = ratings.who(analysis.subjects.len());
     let figure = |palette: Palette| {
         let figure = Figure {
@@ -69,44 +106,69 @@ pub fn report(
     let svg = figure(Palette::PRINT);
     let sections = Sections {
         study,
-        ratings: &ratings,
+        ratings,
         analysis: &analysis,
         figure_svg: &figure(Palette::PAGE),
     };
     let title = format!("Report: {}", study.protocol.study);
-    let contents = [
+    let files = vec![
         (
-            "report.html",
+            "report.html".to_owned(),
             page(&title, &sections.to_html()).into_bytes(),
         ),
-        ("anova.json", analysis.anova.to_json().into_bytes()),
-        ("anova.csv", analysis.anova.to_csv().into_bytes()),
         (
-            "means.csv",
+            "anova.json".to_owned(),
+            analysis.anova.to_json().into_bytes(),
+        ),
+        ("anova.csv".to_owned(), analysis.anova.to_csv().into_bytes()),
+        (
+            "means.csv".to_owned(),
             means_csv(&analysis, study.protocol.analysis.confidence).into_bytes(),
         ),
-        ("figure-10.png", png_from_svg(&svg, PNG_SCALE)?),
-        ("figure-10.svg", svg.into_bytes()),
+        ("figure-10.png".to_owned(), png_from_svg(&svg, PNG_SCALE)?),
+        ("figure-10.svg".to_owned(), svg.into_bytes()),
     ];
-    let out_dir = out_dir.map_or_else(
-        || study.default_report_dir(ratings.observer),
-        Path::to_owned,
-    );
-    let mut files = Vec::new();
-    for (name, bytes) in contents {
-        let file = out_dir.join(name);
-        if let Err(source) = write_atomically(&file, &bytes, Access::Owner) {
-            return Err(AnalysisError::Write { file, source });
-        }
-        files.push(file);
-    }
-    Ok(ReportSummary {
-        page: out_dir.join("report.html"),
+    Ok(Contents {
+        anova_of: analysis,
         files,
-        observer: ratings.observer,
-        n_subjects: analysis.subjects.len(),
-        anova: analysis.anova,
-        warnings: ratings.warnings,
+    })
+}
+
+fn of_pictures(study: &Study, ratings: &StudyRatings) -> Result<Contents, AnalysisError> {
+    let pictures = PictureAnalysis::new(study, ratings)?;
+    let figure = |palette: Palette| {
+        let figure = CellFigure {
+            pictures: &pictures,
+            scale: study.protocol.session.scale,
+            palette,
+        };
+        figure.to_svg()
+    };
+    let svg = figure(Palette::PRINT);
+    let sections = Sections {
+        study,
+        ratings,
+        analysis: &pictures.study,
+        figure_svg: &figure(Palette::PAGE),
+    };
+    let title = format!("Report: {}", study.protocol.study);
+    let html = page(&title, &sections.to_html_of_pictures(&pictures));
+    let anova = &pictures.study.anova;
+    let name = figure_name(study);
+    let files = vec![
+        ("report.html".to_owned(), html.into_bytes()),
+        ("anova.json".to_owned(), anova.to_json().into_bytes()),
+        ("anova.csv".to_owned(), anova.to_csv().into_bytes()),
+        (
+            "means.csv".to_owned(),
+            picture_sections::means_csv(study, &pictures).into_bytes(),
+        ),
+        (format!("{name}.png"), png_from_svg(&svg, PNG_SCALE)?),
+        (format!("{name}.svg"), svg.into_bytes()),
+    ];
+    Ok(Contents {
+        anova_of: pictures.study,
+        files,
     })
 }
 

@@ -41,7 +41,7 @@ impl Sections<'_> {
         .concat()
     }
 
-    fn percent(&self) -> String {
+    pub(crate) fn percent(&self) -> String {
         format!("{:.0}%", 100.0 * self.study.protocol.analysis.confidence)
     }
 
@@ -49,7 +49,7 @@ impl Sections<'_> {
         self.ratings.who(self.analysis.subjects.len())
     }
 
-    fn head(&self) -> String {
+    pub(crate) fn head(&self) -> String {
         let protocol = &self.study.protocol;
         format!(
             "<header>\n<p class=\"byline\">Report of the study <b>{}</b></p>\n<h1>{}</h1>\n\
@@ -80,7 +80,7 @@ impl Sections<'_> {
         }
     }
 
-    fn banners(&self) -> String {
+    pub(crate) fn banners(&self) -> String {
         let mut html = String::new();
         if self.ratings.observer == Observer::Simulated {
             html.push_str(
@@ -112,9 +112,12 @@ impl Sections<'_> {
             .into_iter()
             .map(|paragraph| format!("<p class=\"result\">{paragraph}</p>\n"))
             .collect();
+        self.result_and_design(&paragraphs.concat())
+    }
+
+    pub(crate) fn result_and_design(&self, paragraphs: &str) -> String {
         format!(
-            "<section>\n<h2>Result</h2>\n{}</section>\n<section>\n<h2>The study</h2>\n<p>{}</p>\n</section>\n",
-            paragraphs.concat(),
+            "<section>\n<h2>Result</h2>\n{paragraphs}</section>\n<section>\n<h2>The study</h2>\n<p>{}</p>\n</section>\n",
             design_in_words(&self.study.protocol)
         )
     }
@@ -139,7 +142,7 @@ impl Sections<'_> {
         )
     }
 
-    fn anova(&self) -> String {
+    pub(crate) fn anova(&self) -> String {
         let remarks: Vec<String> = (remarks(&self.analysis.anova).iter())
             .map(|remark| format!("<li>{}</li>\n", escaped(remark)))
             .collect();
@@ -221,7 +224,7 @@ impl Sections<'_> {
         sentences.concat()
     }
 
-    fn published(&self) -> String {
+    pub(crate) fn published(&self) -> String {
         let published = &self.study.protocol.analysis.published;
         if published.is_empty() {
             return String::new();

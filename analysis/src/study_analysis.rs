@@ -83,7 +83,7 @@ pub(crate) struct Difference {
 }
 
 /// The mean rating of each image by one subject.
-type SubjectRatings = BTreeMap<StimulusId, f64>;
+pub(crate) type SubjectRatings = BTreeMap<StimulusId, f64>;
 
 impl StudyAnalysis {
     /// Analyses the ratings as the protocol says.
@@ -129,6 +129,22 @@ impl StudyAnalysis {
         })
     }
 
+    /// Only the analysis of variance, of images that were not rendered.
+    pub(crate) fn of_effects(
+        subjects: Vec<String>,
+        incomplete: Vec<Incomplete>,
+        anova: AnovaTable,
+    ) -> Self {
+        Self {
+            subjects,
+            incomplete,
+            conditions: Vec::new(),
+            anova,
+            differences: Vec::new(),
+            overall_difference: None,
+        }
+    }
+
     /// The image that is on the curve of `group` at `rays`.
     pub(crate) fn condition(&self, group: ChannelGroup, rays: RayCount) -> Option<&ConditionMean> {
         self.conditions
@@ -145,7 +161,7 @@ impl StudyAnalysis {
     }
 }
 
-fn ratings_by_subject(rows: &[RatingRow]) -> BTreeMap<String, SubjectRatings> {
+pub(crate) fn ratings_by_subject(rows: &[RatingRow]) -> BTreeMap<String, SubjectRatings> {
     let mut all: BTreeMap<String, BTreeMap<StimulusId, Vec<f64>>> = BTreeMap::new();
     for row in rows {
         let subject = all.entry(row.subject_id.to_string()).or_default();

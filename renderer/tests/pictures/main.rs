@@ -13,6 +13,7 @@ mod estimates;
 mod every_scene;
 mod files;
 mod interruption;
+mod own_pictures;
 mod platform;
 mod prefix;
 mod quadrature;
