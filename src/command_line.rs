@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use analysis::PrintedF;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use protocols::{
-    Channel, FollowUpPlan, Missing, Observer, Quadrature, RayCount, RefinementDriver, Study,
-    SubjectId, SumsOfSquares,
+    Channel, Export, FollowUpPlan, Missing, Observer, Quadrature, RayCount, RefinementDriver,
+    Study, SubjectId, SumsOfSquares,
 };
 
 use crate::follow_up;
@@ -160,6 +160,9 @@ pub(crate) struct ImageArguments {
     /// How many threads [default: one for each core]
     #[arg(long, value_parser = threads)]
     pub(crate) threads: Option<NonZeroUsize>,
+    /// Further files: xyz (EXR), spectral (EXR, Fichet et al. 2021), png16.
+    #[arg(long, value_name = "KINDS", value_delimiter = ',', value_parser = export)]
+    pub(crate) export: Vec<Export>,
     /// The image: .exr (A, C1, C2) or .png (sRGB).
     #[arg(short, long)]
     pub(crate) out: PathBuf,
@@ -466,6 +469,13 @@ fn size_px(text: &str) -> Result<[u32; 2], String> {
 
 fn quadrature(text: &str) -> Result<Quadrature, String> {
     text.to_owned().try_into()
+}
+
+fn export(text: &str) -> Result<Export, String> {
+    let known = Export::ALL
+        .into_iter()
+        .find(|export| export.as_str() == text);
+    known.ok_or_else(|| format!("found the export {text:?}, expected xyz, spectral or png16"))
 }
 
 fn driver(text: &str) -> Result<RefinementDriver, String> {

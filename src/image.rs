@@ -39,6 +39,7 @@ pub(crate) fn image(arguments: &ImageArguments, progress: Progress) -> anyhow::R
     if let Some(whole) = &arguments.compare {
         let unlimited = ImageRequest {
             samples_maps: Vec::new(),
+            exports: Vec::new(),
             ..request
         };
         let whole = make(arguments, &unlimited, whole, progress)?;
@@ -81,6 +82,7 @@ fn request(arguments: &ImageArguments) -> ImageRequest {
             channel: arguments.confidence_channel,
         }),
         samples_maps: arguments.samples_map.clone(),
+        exports: arguments.export.clone(),
     }
 }
 

@@ -101,10 +101,15 @@ impl ShownFiles {
                 let manifest = Manifest::read(stimuli_dir)?;
                 manifest.check_made_for(study, stimuli_dir)?;
                 let entries = manifest.stimuli.iter();
-                let exr = |entry: &ManifestStimulus| (stimuli_dir.to_owned(), entry.exr.clone());
+                let others = |entry: &ManifestStimulus| -> Vec<_> {
+                    let others = entry.files().filter(|file| file.name != entry.png.name);
+                    others
+                        .map(|file| (stimuli_dir.to_owned(), file.clone()))
+                        .collect()
+                };
                 Ok(Self {
                     size_px: plan.size_px,
-                    others: entries.clone().map(exr).collect(),
+                    others: entries.clone().flat_map(others).collect(),
                     files: entries
                         .map(|entry| (entry.id.clone(), entry.png.clone()))
                         .collect(),

@@ -15,6 +15,7 @@ mod analysis_plan;
 mod atomic_file;
 mod channel;
 mod data_set;
+mod export;
 mod follow_up_plan;
 mod input_error;
 mod manifest;
@@ -43,6 +44,7 @@ pub use analysis_plan::{
 pub use atomic_file::{Access, write_atomically};
 pub use channel::{Channel, ChannelGroup, PerChannel};
 pub use data_set::{DataSet, Observer};
+pub use export::Export;
 pub use follow_up_plan::FollowUpPlan;
 pub use input_error::{InputError, ReadError};
 pub use manifest::{Manifest, ManifestFile, ManifestStimulus, ViewingGeometry};

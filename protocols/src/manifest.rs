@@ -7,7 +7,8 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Acuity, InputError, RayCount, ReadError, Sha256Digest, StimulusId, StimulusPlan, Study, Viewing,
+    Acuity, Export, InputError, RayCount, ReadError, Sha256Digest, StimulusId, StimulusPlan, Study,
+    Viewing,
 };
 
 /// `manifest.json`: what a stimulus set is, and the digest of every file of it.
@@ -82,6 +83,18 @@ pub struct ManifestStimulus {
     pub png: ManifestFile,
     /// Pixels of the PNG that had to be clipped to the sRGB gamut.
     pub out_of_gamut_px: u32,
+    /// The further files that the plan asks for.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub exports: BTreeMap<Export, ManifestFile>,
+}
+
+impl ManifestStimulus {
+    /// Every file of the image.
+    pub fn files(&self) -> impl Iterator<Item = &ManifestFile> {
+        [&self.exr, &self.png]
+            .into_iter()
+            .chain(self.exports.values())
+    }
 }
 
 /// One file of the set.
@@ -117,7 +130,7 @@ impl Manifest {
 
     fn check(&self, path: &Path) -> Result<(), InputError> {
         for stimulus in &self.stimuli {
-            for file in [&stimulus.exr, &stimulus.png] {
+            for file in stimulus.files() {
                 if !file.has_plain_name() {
                     return Err(InputError::new(
                         path,

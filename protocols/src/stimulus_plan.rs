@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{ChannelGroup, RayCount, Stimulus, StimulusId};
+use crate::{ChannelGroup, Export, RayCount, Stimulus, StimulusId};
 
 /// The stimulus set: one scene, one trace, and the ray counts of every image read from it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,6 +20,9 @@ pub struct StimulusPlan {
     pub quadrature: Quadrature,
     /// How the screen tree is refined and read.
     pub tree: TreePlan,
+    /// Which further files are made of each image.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub export: Vec<Export>,
     /// The two images that stay beside the test image.
     pub anchors: Anchors,
     /// The sequences of images, one for each group of channels that is varied.
@@ -98,6 +101,11 @@ impl StimulusPlan {
         {
             let expected = "a width and a height from 1 to 16384 pixels";
             return Some(("stimuli.size_px", format!("{:?}", self.size_px), expected));
+        }
+        let is_twice = |place: usize| self.export[..place].contains(&self.export[place]);
+        if (0..self.export.len()).any(is_twice) {
+            let found = format!("{:?}", self.export);
+            return Some(("stimuli.export", found, "each export once"));
         }
         if !(1..=12).contains(&self.tree.min_depth) {
             let found = self.tree.min_depth.to_string();

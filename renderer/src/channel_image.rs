@@ -33,6 +33,11 @@ impl ChannelImage {
         &self.values
     }
 
+    /// The values alone, row by row.
+    pub(crate) fn into_values(self) -> Vec<f32> {
+        self.values
+    }
+
     /// The root of the mean squared difference from another image; `None` if their sizes differ.
     pub fn rms_difference(&self, other: &Self) -> Option<f64> {
         if self.size_px != other.size_px {

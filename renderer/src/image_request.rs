@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use protocols::{
-    Channel, ChannelGroup, InputError, PerChannel, Quadrature, RayCount, RefinementDriver,
+    Channel, ChannelGroup, Export, InputError, PerChannel, Quadrature, RayCount, RefinementDriver,
     Rendering, TreePlan,
 };
 
@@ -32,6 +32,8 @@ pub struct ImageRequest {
     pub quadrature: Quadrature,
     /// How the tree is refined.
     pub tree: TreePlan,
+    /// Which further files are made.
+    pub exports: Vec<Export>,
     /// How many threads; one for each core if not said. The image is the same with any number.
     pub threads: Option<NonZeroUsize>,
     /// How well every region is to be known; the ray counts are then the most that may be taken.
@@ -57,6 +59,7 @@ impl ImageRequest {
             seed: plan.seed,
             quadrature: plan.quadrature,
             tree: plan.tree.clone(),
+            exports: plan.export.clone(),
             threads: None,
             until: None,
             samples_maps: Vec::new(),

@@ -5,6 +5,7 @@
 
 mod account;
 mod acuity_limits;
+mod band_shader;
 mod cell;
 mod channel_image;
 mod channel_samples;
@@ -12,8 +13,10 @@ mod checkpoint;
 mod confidence;
 mod error;
 mod estimate;
+mod export;
 mod figures;
 mod filter;
+mod float_exr;
 mod from_scene;
 mod geometry;
 mod image_record;
@@ -44,6 +47,7 @@ mod screen_tree;
 mod set_summary;
 mod shader;
 mod spectra;
+mod spectral_image;
 mod srgb;
 mod srgb_png;
 mod stimulus_set;

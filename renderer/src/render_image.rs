@@ -11,6 +11,7 @@ use crate::channel_image::ChannelImage;
 use crate::checkpoint::Checkpoint;
 use crate::confidence::ConfidenceReached;
 use crate::error::RendererError;
+use crate::export::Exporter;
 use crate::image_record::ImageRecord;
 use crate::image_request::ImageRequest;
 use crate::opponent_exr;
@@ -27,6 +28,8 @@ use crate::watch::Watch;
 pub struct ImageSummary {
     /// The file.
     pub path: PathBuf,
+    /// The further files.
+    pub exports: Vec<PathBuf>,
     /// Its digest.
     pub sha256: Sha256Digest,
     /// Rays followed and shaded.
@@ -48,7 +51,9 @@ pub struct ImageSummary {
 impl fmt::Display for ImageSummary {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let PerChannel { a, c1, c2 } = self.rectangles;
-        writeln!(formatter, "{}", self.path.display())?;
+        for path in [&self.path].into_iter().chain(&self.exports) {
+            writeln!(formatter, "{}", path.display())?;
+        }
         writeln!(formatter, "{}", self.account)?;
         if let Some(confidence) = &self.confidence {
             writeln!(formatter, "{confidence}")?;
@@ -133,13 +138,20 @@ pub fn render_image_of(
             rays: account.intersections,
             unknown_area,
         });
+    let record = request.record(scene_sha256, rectangles);
+    let exporter = Exporter {
+        sampler,
+        tree: &tree,
+        request,
+        record: &record,
+        channels,
+    };
+    let exports = exporter.write(out)?;
     // It may be larger than all that is still to be made.
     drop(tree);
     let picture = SrgbEncoder::new().encode(channels);
     let bytes = match format {
-        Format::Exr => {
-            opponent_exr::encode(channels, &request.record(scene_sha256, rectangles), out)?
-        }
+        Format::Exr => opponent_exr::encode(channels, &record, out)?,
         Format::Png => picture.to_png(out)?,
     };
     write_atomically(out, &bytes, Access::Ordinary)
@@ -147,6 +159,9 @@ pub fn render_image_of(
     checkpoint.remove()?;
     Ok(ImageSummary {
         path: out.to_owned(),
+        exports: (exports.iter())
+            .map(|(_, file)| out.with_file_name(&file.name))
+            .collect(),
         sha256: Sha256Digest::of(&bytes),
         account,
         rectangles,

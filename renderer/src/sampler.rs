@@ -3,6 +3,8 @@
 //! Intersection makes the ray tree, geometry only; shading then computes only the channels asked for.
 //! Both depend on nothing but their arguments, so that samples can be taken in any order on any thread.
 
+use std::ops::Range;
+
 use protocols::Channel;
 
 /// A point of the screen: x from 0 (left) to 1 (right), y from 0 (top) to 1 (bottom).
@@ -53,4 +55,12 @@ pub trait Sampler: Sync {
 
     /// The tristimulus value of one channel for a ray tree; the same whatever else is shaded.
     fn shade(&self, tree: &Self::RayTree, channel: Channel) -> f32;
+
+    /// The wavelengths in nm at which there is a spectrum; none for a picture without.
+    fn wavelengths_nm(&self) -> &[f64] {
+        &[]
+    }
+
+    /// The radiance of a ray tree at some of the wavelengths, one for each place of `out`.
+    fn radiance(&self, _tree: &Self::RayTree, _wavelengths: Range<usize>, _out: &mut [f32]) {}
 }

@@ -3,9 +3,12 @@
 //! The same point gives the same bits whatever was sampled before, on any thread: what is random depends on
 //! the point alone, and nothing is remembered.
 
+use std::ops::Range;
+
 use arrayvec::ArrayVec;
 use protocols::{Channel, Quadrature};
 
+use crate::band_shader::BandShader;
 use crate::geometry::{Fan, Hit, Ray, Span, Vector};
 use crate::lighting::{HitKey, LIFT_M, Lighting, Receiver, Surface};
 use crate::ray_tree::RayTree;
@@ -33,6 +36,7 @@ const VIEW_CELLS: u32 = 80;
 pub struct SceneSampler<'scene> {
     scene: &'scene Scene,
     shader: Shader,
+    bands: BandShader,
     lighting: Lighting<'scene>,
     /// What the camera may see where, if that is worth it.
     view: Option<Fan>,
@@ -59,9 +63,12 @@ impl<'scene> SceneSampler<'scene> {
         let aspect = width / height;
         let pyramid = scene.camera.pyramid(aspect);
         let cells = size_px.map(|size| size.clamp(1, VIEW_CELLS));
+        let rule = WavelengthRule::new(quadrature);
+        let shader = Shader::new(scene, &rule);
         Self {
             scene,
-            shader: Shader::new(scene, &WavelengthRule::new(quadrature)),
+            bands: BandShader::new(scene, &rule, &shader),
+            shader,
             lighting: Lighting::new(scene),
             view: Fan::new(&pyramid, cells, scene.shapes.shapes()),
             aspect,
@@ -347,5 +354,13 @@ impl Sampler for SceneSampler<'_> {
 
     fn shade(&self, tree: &RayTree, channel: Channel) -> f32 {
         self.shader.shade(tree, channel)
+    }
+
+    fn wavelengths_nm(&self) -> &[f64] {
+        self.bands.nodes_nm()
+    }
+
+    fn radiance(&self, tree: &RayTree, wavelengths: Range<usize>, out: &mut [f32]) {
+        self.bands.radiance(&self.shader, tree, wavelengths, out);
     }
 }

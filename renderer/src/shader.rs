@@ -138,7 +138,7 @@ impl Shader {
     }
 
     /// What a product is of: the reverse of [`Self::products`].
-    fn way(&self, product: usize) -> (Way, u16) {
+    pub(crate) fn way(&self, product: usize) -> (Way, u16) {
         let (rest, light) = (product / self.lights, product % self.lights);
         let way = Way {
             reflectance: rest % self.reflectances,
@@ -166,9 +166,9 @@ impl Shader {
 
 /// A reflectance of the scene and the metals by which it is seen.
 #[derive(Clone, Copy)]
-struct Way {
-    reflectance: usize,
-    tint: usize,
+pub(crate) struct Way {
+    pub(crate) reflectance: usize,
+    pub(crate) tint: usize,
 }
 
 impl ChannelTables {

@@ -22,6 +22,18 @@ pub fn srgb_encode(linear: f64) -> u8 {
     rounded
 }
 
+/// The 16-bit code of a linear primary: the transfer curve, rounded to the nearest code, clipped.
+pub(crate) fn srgb_encode_16(linear: f64) -> u16 {
+    let code = 65_535.0 * encoded(linear.clamp(0.0, 1.0));
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "from 0 to 65535 after the clamp; not-a-number becomes 0"
+    )]
+    let rounded = (code + 0.5) as u16;
+    rounded
+}
+
 /// Whether a colour cannot be shown: a primary beyond `[0, 1]` by more than half an 8-bit code, the most
 /// that rounding would hide.
 ///

@@ -21,6 +21,7 @@ use crate::acuity_limits::AcuityLimits;
 use crate::channel_image::ChannelImage;
 use crate::checkpoint::Checkpoint;
 use crate::error::RendererError;
+use crate::export::Exporter;
 use crate::image_record::ImageRecord;
 use crate::image_request::ImageRequest;
 use crate::opponent_exr;
@@ -77,7 +78,18 @@ pub fn render_set_of(
         let request = ImageRequest::of_study(rendering, stimulus.rays_a, stimulus.rays_c1c2);
         let channels = recombine(&images, &request, out)?;
         let record = request.record(scene_sha256.clone(), request.rectangles_in(&tree));
-        let written = write_stimulus(stimulus, channels, &record, &encoder, out)?;
+        let mut written = write_stimulus(stimulus, channels, &record, &encoder, out)?;
+        let exporter = Exporter {
+            sampler,
+            tree: &tree,
+            request: &request,
+            record: &record,
+            channels,
+        };
+        written.exports = exporter
+            .write(&out.join(&written.exr.name))?
+            .into_iter()
+            .collect();
         let done = images_done.fetch_add(1, Ordering::Relaxed) + 1;
         watch.tell(Stage::Images, done, stimuli.len() as u64);
         Ok(written)
@@ -202,6 +214,7 @@ fn write_stimulus(
         exr,
         png,
         out_of_gamut_px: picture.out_of_gamut_px,
+        exports: BTreeMap::new(),
     })
 }
 

@@ -51,6 +51,7 @@ pub(crate) fn write_stimuli(study: &Study, folder: &Path) -> PathBuf {
             exr: file("exr", stimulus.id.as_str().as_bytes()),
             png: file("png", &png),
             out_of_gamut_px: 0,
+            exports: std::collections::BTreeMap::new(),
         }
     });
     let manifest = Manifest {

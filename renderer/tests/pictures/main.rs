@@ -11,6 +11,7 @@ mod closed_forms;
 mod confidence;
 mod estimates;
 mod every_scene;
+mod exports;
 mod files;
 mod interruption;
 mod own_pictures;
