@@ -125,6 +125,27 @@ fn a_session_does_not_start_without_the_stimulus_set() {
 }
 
 #[test]
+fn a_file_that_is_named_as_a_folder_is_refused_and_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("file"), "kept").unwrap();
+    for command in [
+        "simulate P --subjects 2 --seed 1 --data file",
+        "simulate P --subjects 2 --seed 1 --stimuli file",
+        "report P --data file",
+        "check P --data file --stimuli file",
+        "render P --out file",
+    ] {
+        let words = command.split(' ');
+        let words = words.map(|word| if word == "P" { PROTOCOL } else { word });
+        let output = acuity(folder.path(), &words.collect::<Vec<_>>());
+        let said = text_of(&output.stdout) + &stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{command}: {said}");
+        assert!(said.contains("file"), "{command}: {said}");
+    }
+    assert_eq!(fs::read(folder.path().join("file")).unwrap(), b"kept");
+}
+
+#[test]
 fn the_program_says_that_a_stopped_channel_changes_a_tree_that_all_channels_drive() {
     let folder = tempfile::tempdir().unwrap();
     let scene = concat!(

@@ -4,6 +4,7 @@
 //! is written into it must agree.
 
 use std::fs::{self, DirBuilder};
+use std::io::ErrorKind;
 use std::os::unix::fs::DirBuilderExt as _;
 use std::path::Path;
 
@@ -119,7 +120,14 @@ pub(crate) fn create_private_folder(folder: &Path) -> Result<(), ExperimentError
         .recursive(true)
         .mode(0o700)
         .create(folder)
-        .map_err(ExperimentError::io("create", folder))
+        .map_err(|error| match error.kind() {
+            ErrorKind::AlreadyExists | ErrorKind::NotADirectory => {
+                InputError::new(folder, "a file", "a folder for the ratings")
+                    .remedy("name another with --data")
+                    .into()
+            }
+            _ => ExperimentError::io("create", folder)(error),
+        })
 }
 
 pub(crate) fn has_entries(folder: &Path) -> Result<bool, ExperimentError> {

@@ -99,6 +99,9 @@ impl ReadError {
     pub fn from_io(file: &Path, kind: &str, source: std::io::Error) -> Self {
         match source.kind() {
             std::io::ErrorKind::IsADirectory => InputError::new(file, "a folder", kind).into(),
+            std::io::ErrorKind::NotADirectory => {
+                InputError::new(file, "a file where a folder should be", kind).into()
+            }
             std::io::ErrorKind::NotFound => {
                 InputError::new(file, format!("no such file ({source})"), kind).into()
             }

@@ -63,6 +63,7 @@ enum Stop {
 
 fn plan() -> TracePlan {
     TracePlan {
+        until: None,
         seed: 1992,
         size_px: SIZE_PX,
         min_depth: 8,

@@ -129,6 +129,7 @@ fn request(rays: u32, side_px: u32) -> Outcome<ImageRequest> {
             min_depth: 8,
             driver: RefinementDriver::A,
         },
+        exports: Vec::new(),
         threads: NonZeroUsize::new(1),
         until: None,
         samples_maps: Vec::new(),

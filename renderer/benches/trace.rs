@@ -40,6 +40,7 @@ fn measure(path: &Path) -> Result<(), RendererError> {
     });
     let sampler = scene.sampler(Quadrature::Bands(16), SIZE_PX);
     let plan = TracePlan {
+        until: None,
         seed: 1992,
         size_px: SIZE_PX,
         min_depth: 8,

@@ -1,5 +1,6 @@
 //! Everything that can go wrong between a scene file and a stimulus set.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use protocols::{InputError, ReadError};
@@ -55,7 +56,15 @@ impl RendererError {
     }
 
     /// A refusal to write `path`.
+    ///
+    /// A file that stands where a folder must be is the user's to move.
     pub(crate) fn writing(path: &Path, source: std::io::Error) -> Self {
+        let kind = source.kind();
+        if matches!(kind, ErrorKind::NotADirectory | ErrorKind::AlreadyExists) {
+            let found = "a file where a folder should be";
+            let error = InputError::new(path, found, "a place for a file");
+            return error.remedy("name another folder or move the file").into();
+        }
         Self::Io {
             action: "write",
             path: path.to_owned(),

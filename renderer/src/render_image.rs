@@ -130,14 +130,7 @@ pub fn render_image_of(
     };
     write_samples_maps(&tree, request)?;
     let account = tree.account();
-    let confidence = request
-        .until
-        .zip(tree.unknown_area)
-        .map(|(until, unknown_area)| ConfidenceReached {
-            until,
-            rays: account.intersections,
-            unknown_area,
-        });
+    let confidence = confidence_reached(&tree, request);
     let record = request.record(scene_sha256, rectangles);
     let exporter = Exporter {
         sampler,
@@ -170,6 +163,16 @@ pub fn render_image_of(
         remark: remark::of_driver(request.tree.driver),
         warnings: Vec::new(),
         picture,
+    })
+}
+
+/// How much of the picture is known as well as the request wants it.
+fn confidence_reached(tree: &ScreenTree, request: &ImageRequest) -> Option<ConfidenceReached> {
+    let (until, unknown_area) = request.until.zip(tree.unknown_area)?;
+    Some(ConfidenceReached {
+        until,
+        rays: tree.account().intersections,
+        unknown_area,
     })
 }
 

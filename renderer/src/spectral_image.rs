@@ -100,6 +100,7 @@ reflectance = [[400, 0.4], [560, 0.5], [620, 0.9], [700, 0.95]]
 
     fn plan() -> TracePlan {
         TracePlan {
+            until: None,
             seed: 1,
             size_px: SIZE_PX,
             min_depth: 6,
