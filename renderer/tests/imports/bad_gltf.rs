@@ -53,7 +53,7 @@ const CASES: &[(Change, &[&str])] = &[
                 .unwrap()
                 .remove("bufferView");
         },
-        &["accessor 0", "no buffer view"],
+        &["accessors[0].bufferView"],
     ),
     (
         |root| root["buffers"][0]["uri"] = "gone.bin".into(),
