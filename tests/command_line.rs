@@ -199,3 +199,38 @@ fn acuity_control_is_rendered_with_and_without_and_compared() {
         assert!(folder.path().join(image).exists());
     }
 }
+
+/// A triangle without a camera or a light.
+const TRIANGLE: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+    property float z\nproperty uchar red\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
+    0 0 0 9\n1 0 0 9\n0 1 0 9\n3 0 1 2\n";
+
+#[test]
+fn what_a_scene_asks_for_in_vain_is_said_by_check_and_when_it_is_rendered() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("triangle.ply"), TRIANGLE).unwrap();
+    let said = "vertex colours are not supported: ignored";
+    let checked = acuity(folder.path(), &["check", "triangle.ply"]);
+    let stdout = String::from_utf8(checked.stdout.clone()).unwrap();
+    assert_eq!(checked.status.code(), Some(0), "{}", stderr(&checked));
+    assert!(
+        stdout.contains(said) && stdout.contains("ready, with 3 warnings"),
+        "{stdout}"
+    );
+    let counts = ["--rays-a", "1K", "--rays-c1c2", "1K", "--size", "20x20"];
+    let words = [
+        &["image", "triangle.ply", "-o", "triangle.png"][..],
+        &counts,
+    ]
+    .concat();
+    let rendered = acuity(folder.path(), &words);
+    assert_eq!(rendered.status.code(), Some(0), "{}", stderr(&rendered));
+    assert!(stderr(&rendered).contains(said), "{}", stderr(&rendered));
+    assert!(folder.path().join("triangle.png").exists());
+    fs::write(folder.path().join("triangle.ply"), &TRIANGLE[..40]).unwrap();
+    refused(folder.path(), &["check", "triangle.ply"], "triangle.ply");
+    assert_eq!(
+        acuity(folder.path(), &["check", "gone.glb"]).status.code(),
+        Some(2)
+    );
+}

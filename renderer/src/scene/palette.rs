@@ -344,6 +344,10 @@ pub(super) fn spectrum_of_points(
             return Err(place.error(field, format!("{value} at {nm} nm"), expected));
         }
     }
+    if !points.iter().any(|&[nm, _]| (360.0..=830.0).contains(&nm)) {
+        let found = "no control point that is seen";
+        return Err(place.error(field, found, "at least one from 360 to 830 nm"));
+    }
     if let Some(pair) = points.windows(2).find(|pair| pair[0][0] >= pair[1][0]) {
         let found = format!("{} nm before {} nm", pair[0][0], pair[1][0]);
         return Err(place.error(field, found, "wavelengths that rise"));

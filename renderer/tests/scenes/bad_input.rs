@@ -172,7 +172,16 @@ const CASES: &[(&str, &str, &[&str])] = &[
         "emittance = \"D50\"",
         &["point_light 1 \"lamp\"", "\"D50\"", "blackbody 3200 K"],
     ),
-    ("emittance = \"D65\"", "emittance = [[2000, 1]]", &[]),
+    (
+        "emittance = \"D65\"",
+        "emittance = [[2000, 1]]",
+        &["lamp", "field emittance", "360 to 830 nm"],
+    ),
+    (
+        "[[400, 0.1], [700, 0.6]]",
+        "[[900, 0.1], [1000, 0.6]]",
+        &["reflectances \"rust\"", "360 to 830 nm"],
+    ),
     (
         "emittance = \"D65\"",
         "emittance = [[500, 0]]",
@@ -313,7 +322,6 @@ fn each_fault_is_named_with_its_place() {
         let text = GOOD.replacen(good, bad, 1);
         assert_ne!(text, GOOD, "{good:?} is not in the good file");
         match error_of(&text) {
-            // Control points beyond the visible are level through it: they are a light of equal power.
             None => assert!(words.is_empty(), "{bad:?} was taken"),
             Some(message) => {
                 assert!(message.contains("\"bad.toml\""), "{message}");
