@@ -41,9 +41,17 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// The lines of a source before its tests, without comments.
+/// The lines of a source before its module of tests, without comments.
 fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    let before_tests = text.split("#[cfg(test)]\nmod ").next().unwrap();
+    let opens_tests = |(start, mark): &(usize, &str)| {
+        let next = text[start + mark.len()..]
+            .lines()
+            .next()
+            .unwrap_or_default();
+        next.contains("mod ") && next.ends_with('{')
+    };
+    let tests = text.match_indices("#[cfg(test)]\n").find(opens_tests);
+    let before_tests = &text[..tests.map_or(text.len(), |(start, _)| start)];
     let lines = (1..).zip(before_tests.lines());
     lines.map(|(number, line)| (number, line.split("//").next().unwrap()))
 }
