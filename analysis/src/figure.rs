@@ -72,6 +72,7 @@ impl Figure<'_> {
             "<rect width=\"{WIDTH}\" height=\"{HEIGHT}\" style=\"fill:{paper}\"/>"
         );
         self.axes(&mut svg);
+        self.plateaus(&mut svg);
         self.legend(&mut svg); // Below the curves, so that it never hides a rating.
         for group in ChannelGroup::ALL {
             self.curve(&mut svg, group);
@@ -81,13 +82,17 @@ impl Figure<'_> {
     }
 
     fn x(&self, rays: RayCount) -> f64 {
+        self.x_of(f64::from(rays.get()))
+    }
+
+    fn x_of(&self, rays: f64) -> f64 {
         let counts = self.analysis.ray_counts();
         let number = |rays: &RayCount| f64::from(rays.get());
         let first = counts.first().map_or(0.0, number);
         let last = counts.last().map_or(1.0, number);
         let inset = 22.0;
         let share = if last > first {
-            (number(&rays) - first) / (last - first)
+            (rays - first) / (last - first)
         } else {
             0.5
         };
@@ -173,6 +178,44 @@ impl Figure<'_> {
         svg.push_str("</g>\n");
     }
 
+    /// The plateau fitted to each curve, with the interval of its corner above the axis.
+    fn plateaus(&self, svg: &mut String) {
+        let Some(found) = &self.analysis.table.asymptotes else {
+            return;
+        };
+        // Ray counts are written as 10K or 500.
+        let unit = if found.unit == "K" { 1000.0 } else { 1.0 };
+        for (row, group) in ChannelGroup::ALL.into_iter().enumerate() {
+            let Some(curve) = found
+                .curves
+                .iter()
+                .find(|curve| curve.level == group.level())
+            else {
+                continue;
+            };
+            let style = CurveStyle::of(group, self.palette);
+            let (first, last) = (curve.x[0], curve.x[curve.x.len() - 1]);
+            let at = |x: f64| {
+                (
+                    self.x_of(unit * x) + style.dodge,
+                    self.y(curve.fit.at(x, 1)),
+                )
+            };
+            let [(x1, y1), (x2, y2), (x3, y3)] = [first, curve.fit.psi, last].map(at);
+            let y = BOTTOM - 7.0 - 11.0 * row as f64;
+            let [low, middle, high] =
+                [curve.psi.low, curve.psi.value, curve.psi.high].map(|x| self.x_of(unit * x));
+            _ = writeln!(
+                svg,
+                "<g style=\"stroke:{}\" fill=\"none\"><path d=\"M{x1:.2},{y1:.2}L{x2:.2},{y2:.2}L{x3:.2},{y3:.2}\" \
+                 stroke-width=\"4\" stroke-opacity=\"0.22\"/><path d=\"M{low:.2},{y:.2}H{high:.2}M{middle:.2},{:.2}v7\" \
+                 stroke-width=\"2\"/></g>",
+                style.color,
+                y - 3.5
+            );
+        }
+    }
+
     fn error_bar(&self, svg: &mut String, x: f64, mean: f64, half: f64) {
         // Beyond the plot a bar is cut, without a cap; ratings cannot lie there.
         let (low, high) = (f64::from(self.scale.lowest), f64::from(self.scale.highest));
@@ -192,12 +235,19 @@ impl Figure<'_> {
 
     fn legend(&self, svg: &mut String) {
         let ink = self.palette.ink;
-        let (left, top) = (RIGHT - 318.0, BOTTOM - 106.0);
+        let has_plateaus = self.analysis.table.asymptotes.is_some();
+        let [raised, height] = if has_plateaus {
+            [46.0, 116.0]
+        } else {
+            [0.0, 92.0]
+        };
+        let (left, top) = (RIGHT - 318.0, BOTTOM - 106.0 - raised);
         _ = writeln!(
             svg,
-            "<rect x=\"{}\" y=\"{}\" width=\"326\" height=\"92\" style=\"fill:{}\"/>",
+            "<rect x=\"{}\" y=\"{}\" width=\"326\" height=\"{}\" style=\"fill:{}\"/>",
             left - 8.0,
             top - 13.0,
+            height,
             self.palette.paper
         );
         let entries = [
@@ -246,6 +296,22 @@ impl Figure<'_> {
             left + 42.0,
             y + 26.5,
             self.who
+        );
+        if has_plateaus {
+            self.plateau_legend(svg, left, y + 44.0);
+        }
+    }
+
+    fn plateau_legend(&self, svg: &mut String, left: f64, y: f64) {
+        let ink = self.palette.ink;
+        let percent = self.confidence * 100.0;
+        _ = writeln!(
+            svg,
+            "<path d=\"M{left},{0}l16,-7h16\" fill=\"none\" style=\"stroke:{ink}\" stroke-width=\"4\" stroke-opacity=\"0.22\"/>\
+                 <text x=\"{1}\" y=\"{2}\" style=\"fill:{ink}\">fitted plateau; above the axis, {percent}% interval of its corner</text>",
+            y + 3.0,
+            left + 42.0,
+            y + 4.5
         );
     }
 }

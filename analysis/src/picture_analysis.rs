@@ -13,7 +13,9 @@ use protocols::{InputError, Missing, StimulusId, Study, StudyImage};
 use crate::cell_matrix::missing_ratings;
 use crate::study_analysis::{Incomplete, StudyAnalysis, SubjectRatings, ratings_by_subject};
 use crate::study_ratings::StudyRatings;
-use crate::{CellMatrix, CellSummary, Observations, anova, cell_summaries};
+use crate::{
+    AnalysisOptions, CellMatrix, CellSummary, Observations, TableAnalysis, cell_summaries,
+};
 
 /// The numbers of a report on own pictures.
 #[derive(Clone, Debug)]
@@ -100,7 +102,12 @@ impl PictureAnalysis {
             study: StudyAnalysis::of_effects(
                 subjects,
                 incomplete,
-                anova(&cells, &[], plan.sums_of_squares),
+                TableAnalysis::new(
+                    &cells,
+                    &[],
+                    plan.sums_of_squares,
+                    &AnalysisOptions::planned(plan),
+                )?,
             ),
         })
     }

@@ -19,7 +19,10 @@ impl Sections<'_> {
             self.figure_of_cells(pictures),
             self.anova(),
             self.published(),
+            self.asymptotes(),
             self.means_of_cells(pictures),
+            self.follow_ups(),
+            self.distribution_free(),
             self.quality(),
             self.provenance(),
         ]

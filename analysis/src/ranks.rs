@@ -237,7 +237,7 @@ impl MeansTable {
 
 /// The rank of each value, ties sharing their mean rank, and the sum of t³ − t over ties of size t. Values closer
 /// than 1e-10 of the largest are tied: they differ by rounding.
-fn midranks(values: &[f64]) -> (Vec<f64>, f64) {
+pub(crate) fn midranks(values: &[f64]) -> (Vec<f64>, f64) {
     let largest = values
         .iter()
         .fold(0.0_f64, |most, value| most.max(value.abs()));

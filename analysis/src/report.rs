@@ -118,7 +118,7 @@ fn of_rendered(study: &Study, ratings: &StudyRatings) -> Result<Contents, Analys
         ),
         (
             "anova.json".to_owned(),
-            analysis.anova.to_json().into_bytes(),
+            analysis.table.to_json().into_bytes(),
         ),
         ("anova.csv".to_owned(), analysis.anova.to_csv().into_bytes()),
         (
@@ -153,11 +153,11 @@ fn of_pictures(study: &Study, ratings: &StudyRatings) -> Result<Contents, Analys
     };
     let title = format!("Report: {}", study.protocol.study);
     let html = page(&title, &sections.to_html_of_pictures(&pictures));
-    let anova = &pictures.study.anova;
+    let (anova, table) = (&pictures.study.anova, &pictures.study.table);
     let name = figure_name(study);
     let files = vec![
         ("report.html".to_owned(), html.into_bytes()),
-        ("anova.json".to_owned(), anova.to_json().into_bytes()),
+        ("anova.json".to_owned(), table.to_json().into_bytes()),
         ("anova.csv".to_owned(), anova.to_csv().into_bytes()),
         (
             "means.csv".to_owned(),

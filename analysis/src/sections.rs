@@ -2,9 +2,8 @@
 
 use std::fmt::Write as _;
 
-use protocols::{ChannelGroup, Correction, Observer, Study};
+use protocols::{ChannelGroup, Correction, Observer, PublishedEffect, Study};
 
-use crate::EffectRow;
 use crate::apa;
 use crate::page::{Table, escaped};
 use crate::results_text::{effect_name, key_result, printed_designs, remarks, sphericity};
@@ -13,6 +12,7 @@ use crate::study_in_words::design_in_words;
 use crate::study_ratings::StudyRatings;
 use crate::tail::f_tail;
 use crate::text_table::p_text;
+use crate::{EffectRow, PrintedF};
 
 /// All that the sections speak of.
 pub(crate) struct Sections<'a> {
@@ -33,8 +33,12 @@ impl Sections<'_> {
             self.figure(),
             self.anova(),
             self.published(),
+            self.asymptotes(),
             self.means(),
             self.differences(),
+            self.follow_ups(),
+            self.distribution_free(),
+            self.observers(),
             self.quality(),
             self.provenance(),
         ]
@@ -277,9 +281,10 @@ impl Sections<'_> {
         let df_error = self.analysis.subjects.len().saturating_sub(n_groups);
         let designs =
             printed_designs(published, &self.who(), n_groups, df_error).unwrap_or_default();
+        let allowed = allowed_designs(published);
         format!(
             "<section>\n<h2>Beside the paper</h2>\n<p>The paper prints <i>F</i> values and bounds on <i>p</i>; the <i>p</i> and \
-             η²<sub>p</sub> in the table follow from <i>F</i> and its degrees of freedom. {designs}</p>\n{}</section>\n",
+             η²<sub>p</sub> in the table follow from <i>F</i> and its degrees of freedom. {designs}</p>\n{}{allowed}</section>\n",
             table.to_html()
         )
     }
@@ -393,16 +398,47 @@ fn mean_cells(condition: Option<&ConditionMean>) -> [String; 4] {
     ]
 }
 
+/// For each printed F, the subjects, levels and groups that its degrees of freedom allow, up to two groups.
+fn allowed_designs(published: &[PublishedEffect]) -> String {
+    let whole = |df: f64| -> Option<u32> { format!("{df}").parse().ok() };
+    let lines: Vec<String> = (published.iter())
+        .filter_map(|effect| {
+            let printed = PrintedF {
+                df_num: whole(effect.df_num)?,
+                df_den: whole(effect.df_den)?,
+                f: Some(effect.f),
+            };
+            let few = printed
+                .designs()
+                .into_iter()
+                .filter(|design| design.n_groups <= 2);
+            let designs: Vec<String> = few.map(|design| design.to_string()).collect();
+            let designs = escaped(&designs.join("; ")).replace(" x ", " × ");
+            Some(format!(
+                "<li>{}, {printed}: {designs}.</li>\n",
+                effect_name(&effect.effect)
+            ))
+        })
+        .collect();
+    if lines.is_empty() {
+        return String::new();
+    }
+    format!(
+        "<p class=\"note\">What the printed degrees of freedom allow, in one group or two:</p>\n<ul class=\"note\">\n{}</ul>\n",
+        lines.concat()
+    )
+}
+
 fn f_with_df(f: f64, df_num: f64, df_den: f64) -> String {
     format!("{f:.2} ({df_num}, {df_den})")
 }
 
-fn fraction_cell(value: Option<f64>, decimals: usize) -> String {
+pub(crate) fn fraction_cell(value: Option<f64>, decimals: usize) -> String {
     value.map_or_else(|| "–".to_owned(), |value| apa::fraction(value, decimals))
 }
 
 /// A p value for a table: small ones as a power of ten, `1.7 × 10⁻⁴¹`.
-fn p_cell(p: Option<f64>) -> String {
+pub(crate) fn p_cell(p: Option<f64>) -> String {
     let Some(p) = p else {
         return "–".to_owned();
     };

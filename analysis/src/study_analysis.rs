@@ -8,15 +8,17 @@ use std::fmt;
 
 use protocols::rating::RatingRow;
 use protocols::{
-    AnalysisPlan, ChannelGroup, InputError, Missing, RayCount, Stimulus, StimulusId, StimulusPlan,
-    Study,
+    AnalysisPlan, ChannelGroup, InputError, Layout, Missing, RayCount, Stimulus, StimulusId,
+    StimulusPlan, Study,
 };
 
 use crate::cell_matrix::missing_ratings;
 use crate::interval::{mean, standard_deviation};
+use crate::p_adjustment::holm;
+use crate::screening::ObserverScreening;
 use crate::study_ratings::StudyRatings;
 use crate::tail::{f_tail, t_quantile};
-use crate::{AnovaTable, CellMatrix, Observations, anova, cell_summaries};
+use crate::{AnalysisOptions, AnovaTable, CellMatrix, Observations, TableAnalysis, cell_summaries};
 
 /// The numbers of a report.
 #[derive(Clone, Debug)]
@@ -29,6 +31,10 @@ pub(crate) struct StudyAnalysis {
     pub(crate) conditions: Vec<ConditionMean>,
     /// The analysis of variance, without the levels that the protocol excludes.
     pub(crate) anova: AnovaTable,
+    /// The same with all that follows it.
+    pub(crate) table: TableAnalysis,
+    /// Who rated how, where everyone rated the same images.
+    pub(crate) observers: Option<ObserverScreening>,
     /// Chromatic less achromatic, by rising ray count; empty unless subjects rated both.
     pub(crate) differences: Vec<Difference>,
     /// The same over all ray counts of the analysis of variance.
@@ -104,7 +110,8 @@ impl StudyAnalysis {
         let by_subject = ratings_by_subject(&ratings.rows);
         let mut groups = subject_groups(study, &by_subject);
         let incomplete = leave_out_incomplete(&mut groups);
-        let anova = anova_as_planned(plan, ratings, &groups, &incomplete)?;
+        let table = analysis_as_planned(plan, ratings, &groups, &incomplete)?;
+        let observers = screening(&groups, study.protocol.session.layout);
         let conditions = condition_means(study, ratings, &groups);
         let both_by_all = plan.between.is_empty();
         let differences = if both_by_all {
@@ -123,23 +130,27 @@ impl StudyAnalysis {
             subjects,
             incomplete,
             conditions,
-            anova,
+            anova: table.anova.clone(),
+            table,
+            observers,
             differences,
             overall_difference,
         })
     }
 
-    /// Only the analysis of variance, of images that were not rendered.
+    /// Only the analysis of variance and what follows it, of images that were not rendered.
     pub(crate) fn of_effects(
         subjects: Vec<String>,
         incomplete: Vec<Incomplete>,
-        anova: AnovaTable,
+        table: TableAnalysis,
     ) -> Self {
         Self {
             subjects,
             incomplete,
             conditions: Vec::new(),
-            anova,
+            anova: table.anova.clone(),
+            table,
+            observers: None,
             differences: Vec::new(),
             overall_difference: None,
         }
@@ -243,12 +254,33 @@ fn leave_out_incomplete(groups: &mut [Group]) -> Vec<Incomplete> {
     incomplete
 }
 
-fn anova_as_planned(
+/// Observers as screened by how their ratings agree; `None` with two groups or fewer than three observers.
+fn screening(groups: &[Group], layout: Layout) -> Option<ObserverScreening> {
+    let [Group { images, members }] = groups else {
+        return None;
+    };
+    let ratings: Vec<Vec<Option<f64>>> = (images.iter())
+        .map(|image| {
+            members
+                .values()
+                .map(|ratings| ratings.get(&image.id).copied())
+                .collect()
+        })
+        .collect();
+    let criterion = match layout {
+        Layout::Dscqs => 0.85,
+        Layout::Flanking | Layout::Sequence | Layout::Single | Layout::Dsis => 0.7,
+    };
+    (members.len() >= 3)
+        .then(|| ObserverScreening::new(members.keys().cloned().collect(), &ratings, criterion))
+}
+
+fn analysis_as_planned(
     plan: &AnalysisPlan,
     ratings: &StudyRatings,
     groups: &[Group],
     incomplete: &[Incomplete],
-) -> Result<AnovaTable, InputError> {
+) -> Result<TableAnalysis, InputError> {
     let names = StimulusPlan::factors();
     let is_excluded = |factor: &str, level: &str| {
         (plan.exclude.iter()).any(|exclusion| {
@@ -293,7 +325,12 @@ fn anova_as_planned(
             names.join(", ")
         ));
     }
-    Ok(anova(&cells, &[], plan.sums_of_squares))
+    TableAnalysis::new(
+        &cells,
+        &[],
+        plan.sums_of_squares,
+        &AnalysisOptions::planned(plan),
+    )
 }
 
 /// Mean and intervals of every image; each group of subjects has its own normalisation.
@@ -418,40 +455,16 @@ impl Difference {
     }
 }
 
-/// Holm (1979), *Scand. J. Stat.* 6, 65–70: `p_(i) -> max over j <= i of min(1, (m - j + 1) p_(j))`.
 fn adjust_by_holm(differences: &mut [Difference]) {
-    let mut order: Vec<usize> = (0..differences.len())
-        .filter(|&index| differences[index].p.is_some())
-        .collect();
-    let p = |index: usize, all: &[Difference]| all[index].p.unwrap_or(1.0);
-    order.sort_by(|&left, &right| p(left, differences).total_cmp(&p(right, differences)));
-    let mut largest = 0.0_f64;
-    for (rank, &index) in order.iter().enumerate() {
-        let factor = (order.len() - rank) as f64;
-        largest = largest.max((factor * p(index, differences)).min(1.0));
-        differences[index].p_holm = Some(largest);
+    let p_values: Vec<Option<f64>> = differences.iter().map(|one| one.p).collect();
+    for (one, adjusted) in differences.iter_mut().zip(holm(&p_values)) {
+        one.p_holm = adjusted;
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn holm_is_holm() {
-        // R: p.adjust(c(.01, .04, .03, .005), "holm") is .03 .06 .06 .02.
-        let mut all = [0.01, 0.04, 0.03, 0.005].map(|p| Difference {
-            rays: None,
-            mean: 0.0,
-            half: None,
-            p: Some(p),
-            p_holm: None,
-        });
-        adjust_by_holm(&mut all);
-        for (one, expected) in all.iter().zip([0.03, 0.06, 0.06, 0.02]) {
-            assert!((one.p_holm.unwrap() - expected).abs() < 1e-15);
-        }
-    }
 
     #[test]
     fn a_paired_difference_has_the_interval_of_student() {

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use protocols::{FollowUpPlan, InputError, SumsOfSquares};
+use protocols::{AnalysisPlan, FollowUpPlan, InputError, SumsOfSquares};
 use serde::Serialize;
 
 use crate::permutation::permutation_tests;
@@ -115,10 +115,16 @@ impl TableAnalysis {
             sums_of_squares,
         };
         let follow_ups = options.follow_ups.iter();
-        let asymptote = options.asymptote.as_ref();
+        let mut table = anova(cells, observed, sums_of_squares);
+        let has_enough = cells.group_sizes().iter().all(|&size| size >= 3);
+        let asymptote = options.asymptote.as_ref().filter(|_| has_enough);
+        if options.asymptote.is_some() && !has_enough {
+            let warning = "no asymptote is sought with fewer than three subjects in a group";
+            table.warnings.push(warning.to_owned());
+        }
         let n_permutations = options.n_permutations;
         Ok(Self {
-            anova: anova(cells, observed, sums_of_squares),
+            anova: table,
             follow_ups: follow_ups
                 .map(|plan| FollowUp::new(plan, cells, settings))
                 .collect::<Result<_, _>>()?,
@@ -163,6 +169,24 @@ impl TableAnalysis {
 }
 
 impl AnalysisOptions {
+    /// As a protocol plans it, with the distribution-free tests.
+    pub(crate) fn planned(plan: &AnalysisPlan) -> Self {
+        let asymptote = plan.asymptote.as_ref();
+        let defaults = Self::default();
+        Self {
+            follow_ups: plan.follow_ups.clone(),
+            confidence: plan.confidence,
+            n_permutations: Some(plan.permutations),
+            asymptote: asymptote.map(|plan| AsymptoteOption {
+                factor: plan.factor.clone(),
+                by: plan.by.clone(),
+            }),
+            n_resamples: asymptote.map_or(defaults.n_resamples, |plan| plan.resamples),
+            delta: asymptote.map_or(defaults.delta, |plan| plan.delta),
+            seed: plan.seed,
+        }
+    }
+
     fn asymptotes(
         &self,
         cells: &CellMatrix,

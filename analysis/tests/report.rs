@@ -466,3 +466,28 @@ fn two_groups_of_six_have_the_degrees_of_freedom_of_the_paper() {
         "each group has its own mean of the image that both saw"
     );
 }
+
+#[test]
+fn what_follows_the_table_is_on_the_page_and_in_the_json() {
+    let trial = Trial::with_people(12);
+    let summary = trial.report().unwrap();
+    let page = std::fs::read_to_string(&summary.page).unwrap();
+    for heading in [
+        "Where the curves flatten",
+        "Follow-up tests",
+        "Does the scale matter?",
+        "Can the observers be trusted?",
+    ] {
+        assert!(page.contains(heading), "{heading}");
+    }
+    assert!(!page.contains("NaN"), "a NaN on the page");
+    let json = std::fs::read_to_string(summary.page.with_file_name("anova.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["asymptotes"]["curves"].as_array().unwrap().len(), 2);
+    assert_eq!(json["follow_ups"].as_array().unwrap().len(), 4);
+    // 12 subjects have 2^12 signs, so every effect within subjects is counted out.
+    for test in json["distribution_free"]["permutation"].as_array().unwrap() {
+        assert_eq!(test["n_arrangements"], 4096);
+        assert_eq!(test["is_exact"], true);
+    }
+}

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::FollowUpPlan;
+
 /// How the ratings are analysed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -24,9 +26,40 @@ pub struct AnalysisPlan {
     pub correction: Correction,
     /// The confidence level of intervals, between 0 and 1.
     pub confidence: f64,
+    /// What is asked after the analysis of variance.
+    #[serde(default)]
+    pub follow_ups: Vec<FollowUpPlan>,
+    /// The curves that are followed to where they flatten.
+    #[serde(default)]
+    pub asymptote: Option<AsymptotePlan>,
+    /// How many random arrangements a permutation test has where there are too many to try all.
+    #[serde(default = "ten_thousand")]
+    pub permutations: u32,
+    /// The seed of permutations and of resampled subjects.
+    #[serde(default)]
+    pub seed: u64,
     /// Test statistics printed elsewhere, shown beside ours.
     #[serde(default)]
     pub published: Vec<PublishedEffect>,
+}
+
+fn ten_thousand() -> u32 {
+    10_000
+}
+
+/// Where curves of means flatten.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AsymptotePlan {
+    /// The factor along which the curves run; its levels are numbers.
+    pub factor: String,
+    /// The factor whose levels have a curve each.
+    #[serde(default)]
+    pub by: Option<String>,
+    /// Ratings closer than this are equivalent.
+    pub delta: f64,
+    /// How often subjects are drawn again for the interval.
+    pub resamples: u32,
 }
 
 impl AnalysisPlan {
@@ -59,11 +92,47 @@ impl AnalysisPlan {
             let found = format!("the factor {:?}", exclusion.factor);
             return Some(("analysis.exclude", found, "a factor of the stimulus set"));
         }
+        self.fault_in_numbers()
+            .or_else(|| self.fault_after_the_table())
+    }
+
+    fn fault_in_numbers(&self) -> Option<(&'static str, String, &'static str)> {
         if !(self.confidence > 0.5 && self.confidence < 1.0) {
             return Some((
                 "analysis.confidence",
                 self.confidence.to_string(),
                 "a level above 0.5 and below 1",
+            ));
+        }
+        if !(100..=10_000_000).contains(&self.permutations) {
+            let found = self.permutations.to_string();
+            return Some(("analysis.permutations", found, "100 to 10000000"));
+        }
+        None
+    }
+
+    /// What is wrong with what is asked after the analysis of variance.
+    fn fault_after_the_table(&self) -> Option<(&'static str, String, &'static str)> {
+        let is_analysed = |name: &str| self.factors().any(|factor| factor == name);
+        let asked = self.follow_ups.iter();
+        let factors = asked.flat_map(|plan| std::iter::once(plan.factor()).chain(plan.at()));
+        if let Some(unknown) = factors.into_iter().find(|factor| !is_analysed(factor)) {
+            let found = format!("the factor {unknown:?}");
+            return Some(("analysis.follow_ups", found, "a factor of this analysis"));
+        }
+        let plan = self.asymptote.as_ref()?;
+        let mut factors = std::iter::once(&plan.factor).chain(&plan.by);
+        if let Some(unknown) = factors.find(|factor| !is_analysed(factor)) {
+            let found = format!("the factor {unknown:?}");
+            return Some(("analysis.asymptote", found, "a factor of this analysis"));
+        }
+        let is_usable = plan.delta > 0.0 && plan.delta.is_finite();
+        if !is_usable || !(200..=10_000_000).contains(&plan.resamples) {
+            let found = format!("delta = {}, resamples = {}", plan.delta, plan.resamples);
+            return Some((
+                "analysis.asymptote",
+                found,
+                "a delta above 0, and 200 to 10000000 resamples",
             ));
         }
         None

@@ -39,7 +39,7 @@ mod viewing;
 
 pub use acuity::Acuity;
 pub use analysis_plan::{
-    AnalysisPlan, Correction, Exclusion, Missing, PublishedEffect, SumsOfSquares,
+    AnalysisPlan, AsymptotePlan, Correction, Exclusion, Missing, PublishedEffect, SumsOfSquares,
 };
 pub use atomic_file::{Access, write_atomically};
 pub use channel::{Channel, ChannelGroup, PerChannel};
