@@ -1,4 +1,5 @@
-//! What a glTF asks for beyond the standard: an error where it is required and unknown, else a warning.
+//! What the JSON of a glTF says before it is read as one: extensions that are required and unknown, and
+//! positions that are nowhere, are errors; other unknown extensions are warnings.
 
 use gltf::binary::Glb;
 use protocols::InputError;
@@ -49,6 +50,14 @@ pub(super) fn check(source: &Source, warnings: &mut Vec<String>) -> Result<(), I
     };
     let root: Value = serde_json::from_slice(json)
         .map_err(|error| source.error(format!("JSON with an error: {error}"), expected))?;
+    let version = &root["asset"]["version"];
+    if !version
+        .as_str()
+        .is_some_and(|version| version.starts_with("2."))
+    {
+        let found = format!("version {version}");
+        return Err(source.error(found, expected).at("asset"));
+    }
     let required = root["extensionsRequired"].as_array().into_iter().flatten();
     let unknown = required
         .filter_map(Value::as_str)
@@ -60,6 +69,7 @@ pub(super) fn check(source: &Source, warnings: &mut Vec<String>) -> Result<(), I
             .at("extensionsRequired")
             .remedy("export the file without it"));
     }
+    check_positions(source, &root)?;
     for (list, kind) in LISTS {
         let things = root[list].as_array().into_iter().flatten();
         for (index, thing) in things.enumerate() {
@@ -74,6 +84,28 @@ pub(super) fn check(source: &Source, warnings: &mut Vec<String>) -> Result<(), I
         let what =
             format!("animations ({animations}) are not supported: it stands as it was saved");
         warnings.push(source.warning("the file", &what));
+    }
+    Ok(())
+}
+
+/// Checks that every primitive has its positions in an accessor that is there: the reader takes it for granted.
+fn check_positions(source: &Source, root: &Value) -> Result<(), InputError> {
+    let accessors = root["accessors"].as_array().map_or(0, Vec::len);
+    let meshes = root["meshes"].as_array().into_iter().flatten();
+    for (index, mesh) in meshes.enumerate() {
+        let primitives = mesh["primitives"].as_array().into_iter().flatten();
+        for primitive in primitives {
+            let position = &primitive["attributes"]["POSITION"];
+            let is_there = position
+                .as_u64()
+                .is_none_or(|accessor| accessor < accessors as u64);
+            if !is_there {
+                let found = format!("POSITION in the accessor {position} of {accessors}");
+                let name = super::gltf_file::named("mesh", mesh["name"].as_str(), index);
+                let expected = "an accessor that is there (from 0)";
+                return Err(source.error(found, expected).at(name));
+            }
+        }
     }
     Ok(())
 }

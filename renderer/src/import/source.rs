@@ -1,7 +1,7 @@
 //! A file to import: its bytes, where the files that it names are, and how to speak of it.
 
 use std::fs::File;
-use std::io::Read as _;
+use std::io::{self, ErrorKind, Read as _};
 use std::path::{Path, PathBuf};
 
 use protocols::{InputError, ReadError};
@@ -99,7 +99,13 @@ impl Source {
 ///
 /// As for [`Source::open`].
 pub(crate) fn bounded_bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
-    let failed = |error| ReadError::from_io(path, "a file to import", error);
+    let failed = |error: io::Error| match error.kind() {
+        ErrorKind::InvalidInput | ErrorKind::InvalidFilename | ErrorKind::NotADirectory => {
+            let found = format!("a name that no file has ({error})");
+            InputError::new(path, found, "a file to import").into()
+        }
+        _ => ReadError::from_io(path, "a file to import", error),
+    };
     let file = File::open(path).map_err(failed)?;
     let mut bytes = Vec::new();
     let mut bounded = file.take(LARGEST_BYTES + 1);

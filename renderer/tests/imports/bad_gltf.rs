@@ -87,7 +87,15 @@ const CASES: &[(Change, &[&str])] = &[
     ),
     (
         |root| root["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 9.into(),
-        &["square.gltf"],
+        &["mesh \"square\"", "the accessor 9 of 3"],
+    ),
+    (
+        |root| root["buffers"][0]["uri"] = "a%00b".into(),
+        &["a name that no file has"],
+    ),
+    (
+        |root| root["buffers"][0]["uri"] = "square.bin/deeper".into(),
+        &["a name that no file has"],
     ),
     (
         |root| {
@@ -126,9 +134,9 @@ const CASES: &[(Change, &[&str])] = &[
     ),
     (
         |root| root["asset"] = json!({ "version": "1.0" }),
-        &["square.gltf"],
+        &["asset: found version \"1.0\""],
     ),
-    (|root| *root = json!([]), &["square.gltf"]),
+    (|root| *root = json!([]), &["asset: found version null"]),
 ];
 
 #[test]
