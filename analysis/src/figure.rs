@@ -308,7 +308,7 @@ impl Figure<'_> {
         _ = writeln!(
             svg,
             "<path d=\"M{left},{0}l16,-7h16\" fill=\"none\" style=\"stroke:{ink}\" stroke-width=\"4\" stroke-opacity=\"0.22\"/>\
-                 <text x=\"{1}\" y=\"{2}\" style=\"fill:{ink}\">fitted plateau; above the axis, {percent}% interval of its corner</text>",
+                 <text x=\"{1}\" y=\"{2}\" style=\"fill:{ink}\">fitted plateau, {percent}% interval of its corner</text>",
             y + 3.0,
             left + 42.0,
             y + 4.5

@@ -471,7 +471,7 @@ fn two_groups_of_six_have_the_degrees_of_freedom_of_the_paper() {
 fn what_follows_the_table_is_on_the_page_and_in_the_json() {
     let trial = Trial::with_people(12);
     let summary = trial.report().unwrap();
-    let page = std::fs::read_to_string(&summary.page).unwrap();
+    let page = fs::read_to_string(&summary.page).unwrap();
     for heading in [
         "Where the curves flatten",
         "Follow-up tests",
@@ -481,7 +481,7 @@ fn what_follows_the_table_is_on_the_page_and_in_the_json() {
         assert!(page.contains(heading), "{heading}");
     }
     assert!(!page.contains("NaN"), "a NaN on the page");
-    let json = std::fs::read_to_string(summary.page.with_file_name("anova.json")).unwrap();
+    let json = fs::read_to_string(summary.page.with_file_name("anova.json")).unwrap();
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(json["asymptotes"]["curves"].as_array().unwrap().len(), 2);
     assert_eq!(json["follow_ups"].as_array().unwrap().len(), 4);
