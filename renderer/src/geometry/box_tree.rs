@@ -106,6 +106,8 @@ impl BoxTree {
             .collect();
         let parameters = BvhBuildParams {
             max_prims_per_leaf: 4,
+            // Boxes are tried four at a time: cheaper than what is in them.
+            collapse_traversal_cost: 0.5,
             ..BvhBuildParams::medium_build()
         };
         let binary = build_bvh2(&boxes, parameters, &mut std::time::Duration::default());
@@ -221,6 +223,11 @@ impl BoxTree {
             }
             let node = &self.nodes[child.first as usize];
             let (entries, mut met) = node.entries(ray, end);
+            if met.is_power_of_two() {
+                let slot = met.trailing_zeros() as usize;
+                waiting.push((node.children[slot], entries[slot]));
+                continue;
+            }
             let bottom = waiting.len();
             while met != 0 {
                 let slot = met.trailing_zeros() as usize;

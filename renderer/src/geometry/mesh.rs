@@ -184,8 +184,10 @@ impl Mesh {
 }
 
 impl Triangle {
+    #[inline]
     fn vectors(&self) -> [Vector; 3] {
-        self.corners.map(vector)
+        let [a, b, c] = self.corners;
+        [vector(a), vector(b), vector(c)]
     }
 
     fn has_area(&self) -> bool {
@@ -204,25 +206,29 @@ impl Triangle {
         let [a, b, c] = self.vectors();
         let (edge_b, edge_c) = (b - a, c - a);
         let across = ray.direction.cross(edge_c);
-        let inverse = edge_b.dot(across).recip();
+        let determinant = edge_b.dot(across);
+        // Everything is compared as a multiple of it, so that most misses are known without a division.
+        let size = determinant.abs();
+        let slack = SLACK * size;
         let offset = ray.origin - a;
-        let of_b = offset.dot(across) * inverse;
-        // Not a number if the ray runs along the triangle: no comparison holds.
-        if !(-SLACK..=1.0 + SLACK).contains(&of_b) {
+        let of_b = offset.dot(across) * determinant.signum();
+        // A ray along the triangle has a determinant of 0: it is let through here, and stopped below.
+        if !(of_b >= -slack && of_b <= size + slack) {
             return None;
         }
         let over = offset.cross(edge_b);
-        let of_c = ray.direction.dot(over) * inverse;
-        if !(of_c >= -SLACK && of_b + of_c <= 1.0 + SLACK) {
+        let of_c = ray.direction.dot(over) * determinant.signum();
+        if !(of_c >= -slack && of_b + of_c <= size + slack) || size == 0.0 {
             return None;
         }
-        let distance_m = edge_c.dot(over) * inverse;
+        let distance_m = edge_c.dot(over) / determinant;
         span.holds(distance_m).then_some(distance_m)
     }
 }
 
-fn vector(coordinates: [f32; 3]) -> Vector {
-    coordinates.map(f64::from).into()
+#[inline]
+fn vector([x, y, z]: [f32; 3]) -> Vector {
+    Vector::new(f64::from(x), f64::from(y), f64::from(z))
 }
 
 #[cfg(test)]
