@@ -1,6 +1,6 @@
 """The study's scene at its fourteen ray counts: Mitsuba 3 beside `acuity render`, both as whole processes.
 
-    python mitsuba.py ACUITY       ACUITY: the release build of the program
+    python with_mitsuba.py ACUITY       ACUITY: the release build of the program
 
 Needs `pip install mitsuba numpy`. `llvm_ad_spectral` needs LLVM 19 or later: Debian's `libllvm19`, or another
 libLLVM named by DRJIT_LIBLLVM_PATH. Mitsuba cannot take fewer rays than pixels, so each count is rendered
@@ -35,10 +35,9 @@ def render(variant):
     integrator = '<integrator type="path"><integer name="max_depth" value="4"/></integrator>'
     with tempfile.TemporaryDirectory() as folder:
         exported = Exported(SCENE, folder)
-        lights = list(range(len(exported.lights())))
         for rays in range(10_000, 150_000, 10_000):
             side = round(rays**0.5)
-            scene = mi.load_string(exported.xml([side, side], 1, lights, integrator))
+            scene = mi.load_string(exported.xml([side, side], 1, integrator=integrator))
             np.array(mi.render(scene, spp=1))
 
 
