@@ -1,14 +1,22 @@
 //! The values of one channel, for the samples at which it was shaded and no others.
 //!
 //! A channel that was shaded up to some sample holds a plain list; one that left samples out, since they
-//! lay below its depth, holds beside it which samples it has.
+//! lay below its depth, holds beside it one bit for each sample, and every 64 bits how many came before.
 
 /// The values of one channel.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ChannelSamples {
     values: Vec<f32>,
-    /// The samples of the values, rising; empty as long as they are 0, 1, 2, ...
-    samples: Vec<u32>,
+    /// Which samples have a value; empty as long as they are 0, 1, 2, ...
+    shaded: Vec<Shaded>,
+}
+
+/// Which of 64 samples have a value.
+#[derive(Clone, Copy, Debug, Default)]
+struct Shaded {
+    bits: u64,
+    /// How many values the samples before have.
+    before: usize,
 }
 
 impl ChannelSamples {
@@ -16,28 +24,44 @@ impl ChannelSamples {
     pub(crate) fn with_capacity(values: usize) -> Self {
         Self {
             values: Vec::with_capacity(values),
-            samples: Vec::new(),
+            shaded: Vec::new(),
         }
     }
 
     /// Adds the value of a sample later than all before.
     pub(crate) fn push(&mut self, sample: u32, value: f32) {
-        let is_gapless = self.samples.is_empty() && self.values.len() == sample as usize;
+        let is_gapless = self.shaded.is_empty() && self.values.len() == sample as usize;
         if !is_gapless {
-            if self.samples.is_empty() {
-                self.samples.extend((0..).take(self.values.len()));
+            if self.shaded.is_empty() {
+                for (earlier, before) in (0..sample).zip(0..self.values.len()) {
+                    self.mark(earlier, before);
+                }
             }
-            self.samples.push(sample);
+            self.mark(sample, self.values.len());
         }
         self.values.push(value);
     }
 
+    /// Notes that a sample has a value, and how many values came before.
+    fn mark(&mut self, sample: u32, before: usize) {
+        let word = sample as usize / 64;
+        if word >= self.shaded.len() {
+            self.shaded.resize(word + 1, Shaded { bits: 0, before });
+        }
+        self.shaded[word].bits |= 1 << (sample % 64);
+    }
+
     /// The value of a sample, if the channel was shaded there.
     pub(crate) fn get(&self, sample: u32) -> Option<f32> {
-        let place = if self.samples.is_empty() {
+        let place = if self.shaded.is_empty() {
             sample as usize
         } else {
-            self.samples.binary_search(&sample).ok()?
+            let Shaded { bits, before } = *self.shaded.get(sample as usize / 64)?;
+            let bit = 1_u64 << (sample % 64);
+            if bits & bit == 0 {
+                return None;
+            }
+            before + (bits & (bit - 1)).count_ones() as usize
         };
         self.values.get(place).copied()
     }
@@ -54,12 +78,12 @@ mod tests {
 
     #[test]
     fn only_what_was_pushed_is_found() {
-        let shaded = [0, 1, 2, 5, 9, 10];
+        let shaded = [0, 1, 2, 5, 9, 10, 63, 64, 127, 400, 401];
         let mut samples = ChannelSamples::default();
         for sample in shaded {
             samples.push(sample, sample as f32);
         }
-        for sample in 0..20 {
+        for sample in 0..500 {
             let expected = shaded.contains(&sample).then_some(sample as f32);
             assert_eq!(samples.get(sample), expected, "sample {sample}");
         }

@@ -113,7 +113,7 @@ impl LeafMap {
 
 /// The first square whose middle lies in an interval, and the first beyond.
 fn middles(start: f64, length: f64, squares: usize) -> [usize; 2] {
-    [start, start + length].map(|end| to_index((end * squares as f64 - 0.5).ceil()))
+    [start, start + length].map(|end| up_to_index(end * squares as f64 - 0.5))
 }
 
 /// The square that begins at a place or holds it.
@@ -123,7 +123,13 @@ fn square(place: f64, squares: usize) -> usize {
 
 /// The square that ends at a place or holds it.
 fn square_before(place: f64, squares: usize) -> Option<usize> {
-    to_index((place * squares as f64).ceil()).checked_sub(1)
+    up_to_index(place * squares as f64).checked_sub(1)
+}
+
+/// The least whole number that is no less, without a call of `ceil`.
+fn up_to_index(place: f64) -> usize {
+    let below = to_index(place);
+    below + usize::from((below as f64) < place)
 }
 
 #[expect(
