@@ -18,7 +18,7 @@ struct Example {
 impl Example {
     fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let example = Path::new(PROTOCOL).join("../../docs/examples/quantisation");
+        let example = Path::new(PROTOCOL).with_file_name("../docs/examples/quantisation");
         fs::create_dir(folder.path().join("pictures")).unwrap();
         for source in ["", "pictures"] {
             for entry in fs::read_dir(example.join(source)).unwrap() {

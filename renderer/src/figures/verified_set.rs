@@ -20,6 +20,7 @@ pub(super) struct VerifiedSet<'a> {
 
 impl<'a> VerifiedSet<'a> {
     pub(super) fn read(study: &Study, folder: &'a Path) -> Result<Self, RendererError> {
+        study.render_plan()?;
         let manifest = Manifest::read(folder)?;
         manifest.check_made_for(study, folder)?;
         Ok(Self { manifest, folder })
