@@ -52,7 +52,7 @@ class Exported:
     def note_what_has_no_counterpart(self):
         known = {"camera", "ambient", "distant_light", "point_light", "reflectances", "diffuse", "glossy"}
         known |= {"mirror", "glass", "sphere", "box", "cylinder", "cone", "disc", "rectangle", "ground"}
-        known |= {"rectangle_light", "sphere_light"}
+        known |= {"rectangle_light", "sphere_light", "mesh"}
         for key in self.scene.keys() - known:
             raise ValueError(f"{self.path}: the table {key} cannot be exported")
         if self.exact:
@@ -236,6 +236,20 @@ class Exported:
         yield self.triangles(cone["material"], fan(tip, rim), f"{label}-side")
         yield self.disc(cone["material"], base, frame, radius, f"{label}-base", flip=True)
 
+    def mesh(self, mesh):
+        """A mesh of PLY or OBJ whose file has z up, with a material of the scene."""
+        file = self.path.parent / mesh["file"]
+        if mesh.get("up") != "z" or "material" not in mesh or file.suffix not in (".ply", ".obj"):
+            raise ValueError(f"{self.path}: {file.name}: only PLY and OBJ with up = \"z\" and a material")
+        turn, scale = math.radians(mesh.get("rotation_deg", 0)), mesh.get("scale", 1)
+        cos, sin = scale * math.cos(turn), scale * math.sin(turn)
+        columns = ((cos, sin, 0), (-sin, cos, 0), (0, 0, scale), mesh.get("position_m", (0, 0, 0)))
+        normals = b"property float nx" if file.suffix == ".ply" else b"\nvn "
+        is_flat = str(normals not in file.read_bytes()).lower()
+        filename = f'<string name="filename" value="{escape(str(file.resolve()))}"/>'
+        flat = f'<boolean name="face_normals" value="{is_flat}"/>'
+        return shape(file.suffix[1:], columns, filename + flat + self.bsdf(mesh["material"], None))
+
     def shapes(self):
         """The elements of all shapes."""
         scene, half = self.scene, GROUND_HALF_M
@@ -244,6 +258,8 @@ class Exported:
             corner = (x - half, y - half, ground["height_m"])
             edges = ((2 * half, 0, 0), (0, 2 * half, 0))
             yield self.rectangle(ground["material"], corner, edges, corner[:2])
+        for mesh in scene.get("mesh", []):
+            yield self.mesh(mesh)
         for rectangle in scene.get("rectangle", []):
             edges = (rectangle["edge_u_m"], rectangle["edge_v_m"])
             yield self.rectangle(rectangle["material"], rectangle["corner_m"], edges)

@@ -109,6 +109,14 @@ fn a_mirror_of_a_coloured_metal() {
     case.assert_differs("radius_m = 0.9", "radius_m = 0.89");
 }
 
+#[test]
+fn meshes_smooth_and_flat() {
+    let case = Case::read("meshes");
+    case.assert_same();
+    case.assert_differs("scale = 0.7", "scale = 0.69");
+    case.assert_differs("rotation_deg = 25", "rotation_deg = 30");
+}
+
 /// Mitsuba by `whitted.py`, as are the next two.
 #[test]
 fn coats_highlights_and_ambient_light() {

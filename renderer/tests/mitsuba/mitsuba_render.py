@@ -21,7 +21,7 @@ import whitted  # noqa: F401, registers its plugins
 from export import Exported
 
 # How many hits a path of Mitsuba's own integrator may have; 1 is direct light only.
-PATH_HITS = {"lights": 1, "shadows": 1, "patterns": 1, "areas": 1, "mirror": 2}
+PATH_HITS = {"lights": 1, "shadows": 1, "patterns": 1, "areas": 1, "meshes": 1, "mirror": 2}
 
 
 def load(scene_file, size_px, samples):
