@@ -101,6 +101,53 @@ fn the_set_is_the_same_with_one_and_two_threads_and_one_image_alone_equals_the_s
     }
 }
 
+/// `cd stimuli && sha256sum -c meyer-liu-1992.sha256` checks a set by hand. A change of the renderer that
+/// changes the stimuli must be meant: `ACUITY_UPDATE_CHECKSUMS=1 cargo test --release --test replication
+/// images_of_the_paper` writes the list anew.
+///
+/// The variable tells glibc to do without newer instructions, with which its sines and exponentials have other
+/// last bits; elsewhere it does nothing. So the pictures do not depend on the platform's mathematics.
+#[test]
+fn the_images_of_the_paper_are_those_of_the_checksums() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_acuity"))
+        .current_dir(folder.path())
+        .args(["render", PROTOCOL, "--out", "meyer-liu-1992", "-q"])
+        .env(
+            "GLIBC_TUNABLES",
+            "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX,-AVX512F",
+        )
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    let lines = digests(folder.path())
+        .into_iter()
+        .filter_map(|(path, digest)| {
+            let is_image = path.extension().is_some_and(|ending| ending != "json");
+            is_image.then(|| format!("{digest}  {}\n", path.display()))
+        });
+    let ours: Vec<String> = lines.collect();
+    assert_eq!(ours.len(), 28 * 2);
+    let list = Path::new(env!("CARGO_MANIFEST_DIR")).join("stimuli/meyer-liu-1992.sha256");
+    if std::env::var_os("ACUITY_UPDATE_CHECKSUMS").is_some() {
+        fs::write(&list, ours.concat()).unwrap();
+    }
+    let held = fs::read_to_string(&list).unwrap();
+    let changed: Vec<&str> = ours
+        .iter()
+        .map(String::as_str)
+        .filter(|line| !held.contains(*line))
+        .collect();
+    assert!(
+        changed.is_empty() && held == ours.concat(),
+        "{} of {} images are not those of {}:\n{}",
+        changed.len(),
+        ours.len(),
+        list.display(),
+        changed.concat()
+    );
+}
+
 #[test]
 fn no_pixel_of_the_ten_anchor_is_out_of_the_srgb_gamut() {
     let folder = tempfile::tempdir().unwrap();
