@@ -42,6 +42,13 @@ pub(super) fn check(source: &Source, warnings: &mut Vec<String>) -> Result<(), I
     let expected = "a glTF 2.0 file";
     let glb;
     let json = if source.bytes.starts_with(b"glTF") {
+        let length = source
+            .bytes
+            .get(8..12)
+            .map(|length| length.iter().skip(1).all(|&byte| byte == 0));
+        if length == Some(true) && source.bytes[8] < 12 {
+            return Err(source.error("a length of less than 12 bytes", expected));
+        }
         glb = Glb::from_slice(&source.bytes)
             .map_err(|error| source.error(error.to_string(), expected))?;
         glb.json.as_ref()
@@ -70,6 +77,7 @@ pub(super) fn check(source: &Source, warnings: &mut Vec<String>) -> Result<(), I
             .remedy("export the file without it"));
     }
     check_positions(source, &root)?;
+    check_choices(source, &root)?;
     for (list, kind) in LISTS {
         let things = root[list].as_array().into_iter().flatten();
         for (index, thing) in things.enumerate() {
@@ -104,6 +112,34 @@ fn check_positions(source: &Source, root: &Value) -> Result<(), InputError> {
                 let name = super::gltf_file::named("mesh", mesh["name"].as_str(), index);
                 let expected = "an accessor that is there (from 0)";
                 return Err(source.error(found, expected).at(name));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Checks that images, cameras and lights have the fields that their kind asks for: the reader takes it for
+/// granted.
+fn check_choices(source: &Source, root: &Value) -> Result<(), InputError> {
+    let lights = &root["extensions"]["KHR_lights_punctual"]["lights"];
+    for (kind, list) in [
+        ("image", &root["images"]),
+        ("camera", &root["cameras"]),
+        ("light", lights),
+    ] {
+        let things = list.as_array().into_iter().flatten();
+        for (index, thing) in things.enumerate() {
+            let needed: &[&str] = match (kind, thing["type"].as_str()) {
+                ("image", _) if !thing["bufferView"].is_null() => &["mimeType"],
+                ("image", _) => &["uri"],
+                ("camera", Some("perspective")) => &["perspective"],
+                ("camera", Some("orthographic")) => &["orthographic"],
+                ("light", Some("spot")) => &["spot"],
+                _ => &[],
+            };
+            if let Some(missing) = needed.iter().find(|field| thing[**field].is_null()) {
+                let name = super::gltf_file::named(kind, thing["name"].as_str(), index);
+                return Err(source.error(format!("no {missing}"), "one").at(name));
             }
         }
     }

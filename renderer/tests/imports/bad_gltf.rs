@@ -90,6 +90,22 @@ const CASES: &[(Change, &[&str])] = &[
         &["mesh \"square\"", "the accessor 9 of 3"],
     ),
     (
+        |root| root["images"][0] = json!({ "bufferView": 0 }),
+        &["image 0: found no mimeType"],
+    ),
+    (
+        |root| root["images"][0] = json!({}),
+        &["image 0: found no uri"],
+    ),
+    (
+        |root| root["cameras"][0]["type"] = "orthographic".into(),
+        &["camera 0: found no orthographic"],
+    ),
+    (
+        |root| root["extensions"]["KHR_lights_punctual"]["lights"][0]["type"] = "spot".into(),
+        &["light \"sun\": found no spot"],
+    ),
+    (
         |root| root["buffers"][0]["uri"] = "a%00b".into(),
         &["a name that no file has"],
     ),
