@@ -260,22 +260,8 @@ impl Figure<'_> {
                 "achromatic channel (A) varied, C1 and C2 held",
             ),
         ];
-        for (row, (group, text)) in entries.into_iter().enumerate() {
-            let y = 22.0_f64.mul_add(row as f64, top);
-            let style = CurveStyle::of(group, self.palette);
-            let color = style.color;
-            _ = writeln!(
-                svg,
-                "<g style=\"stroke:{color}\" stroke-width=\"1.5\" fill=\"none\"><path d=\"M{left},{y}h32\" {}/>",
-                style.dash
-            );
-            style.marker(svg, left + 16.0, y, self.palette);
-            _ = writeln!(
-                svg,
-                "</g><text x=\"{}\" y=\"{}\" style=\"fill:{ink}\">{text}</text>",
-                left + 42.0,
-                y + 4.5
-            );
+        for (row, entry) in entries.into_iter().enumerate() {
+            self.curve_legend(svg, entry, [left, 22.0_f64.mul_add(row as f64, top)]);
         }
         let y = top + 44.0;
         let percent = self.confidence * 100.0;
@@ -300,6 +286,24 @@ impl Figure<'_> {
         if has_plateaus {
             self.plateau_legend(svg, left, y + 44.0);
         }
+    }
+
+    fn curve_legend(&self, svg: &mut String, entry: (ChannelGroup, &str), place: [f64; 2]) {
+        let ((group, text), [left, y]) = (entry, place);
+        let style = CurveStyle::of(group, self.palette);
+        _ = writeln!(
+            svg,
+            "<g style=\"stroke:{}\" stroke-width=\"1.5\" fill=\"none\"><path d=\"M{left},{y}h32\" {}/>",
+            style.color, style.dash
+        );
+        style.marker(svg, left + 16.0, y, self.palette);
+        _ = writeln!(
+            svg,
+            "</g><text x=\"{}\" y=\"{}\" style=\"fill:{}\">{text}</text>",
+            left + 42.0,
+            y + 4.5,
+            self.palette.ink
+        );
     }
 
     fn plateau_legend(&self, svg: &mut String, left: f64, y: f64) {

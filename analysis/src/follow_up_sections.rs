@@ -103,7 +103,7 @@ impl Sections<'_> {
             "<section>\n<h2>Follow-up tests</h2>\n{}<p class=\"note\">Each comparison has an error term of its own, the \
              subjects’ scores of that contrast, so none needs sphericity. <i>d</i><sub>z</sub> is the difference over the \
              standard deviation of these scores, <i>d</i><sub>av</sub> over the mean standard deviation of the two \
-             means. Intervals are not adjusted; adjusted <i>p</i> values are over all lines of a table. Simple effects: \
+             means. Intervals are not adjusted; adjusted <i>p</i> values are over all lines of a table (Bonferroni’s stand in <code>anova.json</code>). Simple effects: \
              Greenhouse–Geisser <i>p</i>.</p>\n</section>\n",
             tables.concat()
         )
@@ -148,7 +148,6 @@ impl Sections<'_> {
                 "<i>t</i>",
                 "<i>p</i>",
                 "Holm",
-                "Bonferroni",
             ];
             columns.extend(has_tukey.then_some("Tukey"));
             columns.extend(["<i>d</i><sub>z</sub>", &interval, "<i>d</i><sub>av</sub>"]);
@@ -156,7 +155,7 @@ impl Sections<'_> {
             for one in &family.comparisons {
                 let mut cells = comparison_cells(one);
                 if has_tukey {
-                    cells.insert(7, p_cell(one.p_tukey));
+                    cells.insert(6, p_cell(one.p_tukey));
                 }
                 table.row(&cells);
             }
@@ -241,7 +240,6 @@ fn comparison_cells(one: &Comparison) -> Vec<String> {
         number(one.t),
         p_cell(one.p),
         p_cell(one.p_holm),
-        p_cell(one.p_bonferroni),
     ];
     cells.push(number(one.dz));
     cells.push(

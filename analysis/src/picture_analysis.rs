@@ -77,6 +77,8 @@ impl PictureAnalysis {
         }
         let mut subjects: Vec<String> = members.keys().cloned().collect();
         subjects.sort_by(|left, right| crate::natural_order(left, right));
+        let options = AnalysisOptions::planned(plan);
+        let table = TableAnalysis::new(&cells, &[], plan.sums_of_squares, &options)?;
         let summaries = cell_summaries(&cells, plan.confidence);
         let of_cell = |summary: CellSummary| Mean {
             of: cells
@@ -99,16 +101,7 @@ impl PictureAnalysis {
                 .collect(),
             cells: summaries.into_iter().map(of_cell).collect(),
             images: image_means(study, ratings, &images, &members),
-            study: StudyAnalysis::of_effects(
-                subjects,
-                incomplete,
-                TableAnalysis::new(
-                    &cells,
-                    &[],
-                    plan.sums_of_squares,
-                    &AnalysisOptions::planned(plan),
-                )?,
-            ),
+            study: StudyAnalysis::of_effects(subjects, incomplete, table),
         })
     }
 }
