@@ -44,9 +44,9 @@ pub(super) fn check(source: &Source, warnings: &mut Vec<String>) -> Result<(), I
     let json = if source.bytes.starts_with(b"glTF") {
         let length = source
             .bytes
-            .get(8..12)
-            .map(|length| length.iter().skip(1).all(|&byte| byte == 0));
-        if length == Some(true) && source.bytes[8] < 12 {
+            .get(8..)
+            .and_then(|rest| rest.first_chunk::<4>());
+        if length.is_some_and(|length| u32::from_le_bytes(*length) < 12) {
             return Err(source.error("a length of less than 12 bytes", expected));
         }
         glb = Glb::from_slice(&source.bytes)
