@@ -147,7 +147,7 @@ pub(crate) struct ImageArguments {
     /// The channel whose means are to be known: A, C1 or C2.
     #[arg(long, default_value = "A", value_name = "CHANNEL", value_parser = channel, requires = "until_within")]
     pub(crate) confidence_channel: Channel,
-    /// Refine no channel beyond what can be seen: by [acuity] and [viewing] of PROTOCOL, or if none is named by
+    /// Refine no channel beyond what can be seen: by the tables acuity and viewing of PROTOCOL, or if none is named by
     /// Mullen's cutoffs (34 and 11 cycles/degree) at 0.019 degrees a pixel.
     #[arg(long, value_name = "PROTOCOL", num_args = 0..=1, default_missing_value = "paper", value_parser = eye)]
     pub(crate) acuity: Option<Eye>,
