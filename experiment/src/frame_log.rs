@@ -60,6 +60,8 @@ fn microseconds(seconds: f64) -> u64 {
 fn word(screen: Screen) -> &'static str {
     match screen {
         Screen::Instructions => "instructions",
+        Screen::Page(_) => "page",
+        Screen::Break { .. } => "break",
         Screen::Resumed => "resumed",
         Screen::PracticeOver => "practice_over",
         Screen::Blank => "grey",

@@ -51,7 +51,7 @@ pub use quality::{Quality, qualities, visible_difference_jod};
 pub use ready::check_ready;
 pub use refresh::Refresh;
 pub use response::Response;
-pub use rules::Rules;
+pub use rules::{Breaks, Rules};
 pub use session::{Answer, Ending, Event, Screen, Session};
 pub use simulate::{SimulationSummary, simulate};
 pub use sitting::{RunOptions, SessionEnd, close_session};

@@ -22,6 +22,8 @@ pub enum Noted {
     Pause,
     /// The session goes on after either.
     GoneOn,
+    /// A break begins.
+    Break,
     /// An exposure was cut short and is shown again.
     ExposureInterrupted,
     /// An answer sooner than the shortest response time; not taken.
@@ -50,6 +52,7 @@ impl Noted {
         match self {
             Self::Escape => "escape",
             Self::Pause => "pause",
+            Self::Break => "break",
             Self::GoneOn => "gone_on",
             Self::ExposureInterrupted => "exposure_interrupted",
             Self::TooSoon => "answer_too_soon",

@@ -1,6 +1,27 @@
 //! What the session machine must know of the protocol.
 
-use protocols::{Layout, RatingTime, ResponseStyle, Scale, SessionPlan};
+use protocols::{BreakPlan, Layout, RatingTime, ResponseStyle, Scale, SessionPlan};
+
+/// Breaks between the test trials.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Breaks {
+    /// After so many test trials.
+    pub every: u32,
+    /// How long one is.
+    pub seconds: f64,
+    /// Whether the subject may go on before it is over.
+    pub can_be_cut_short: bool,
+}
+
+impl From<&BreakPlan> for Breaks {
+    fn from(plan: &BreakPlan) -> Self {
+        Self {
+            every: plan.every,
+            seconds: plan.seconds,
+            can_be_cut_short: plan.can_be_cut_short,
+        }
+    }
+}
 
 /// The protocol's layout, scale and times.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +42,10 @@ pub struct Rules {
     pub shortest_response_s: f64,
     /// Without an answer by then the images are shown again.
     pub longest_response_s: f64,
+    /// How many pages follow the instructions.
+    pub pages: usize,
+    /// The breaks.
+    pub breaks: Option<Breaks>,
 }
 
 impl Rules {
@@ -35,6 +60,8 @@ impl Rules {
             rating: plan.rating,
             shortest_response_s: plan.shortest_response_s.unwrap_or(0.0),
             longest_response_s: plan.longest_response_s.unwrap_or(f64::INFINITY),
+            pages: plan.pages.len(),
+            breaks: plan.breaks.as_ref().map(Breaks::from),
         }
     }
 
@@ -45,6 +72,10 @@ impl Rules {
             exposure_s: self.exposure_s / speed,
             pause_s: self.pause_s / speed,
             shortest_response_s: self.shortest_response_s / speed,
+            breaks: self.breaks.map(|breaks| Breaks {
+                seconds: breaks.seconds / speed,
+                ..breaks
+            }),
             ..self
         }
     }

@@ -1,7 +1,7 @@
 //! The session as a pure machine: what is on the screen, and what each event changes.
 //!
 //! ```text
-//! instructions -> practice trials -> practice over -> test trials -> thanks
+//! instructions, pages -> practice trials -> practice over -> test trials, breaks -> thanks
 //! trial: pause (grey) -> exposure -> rating (waits) -> saving -> next trial
 //! ```
 //!
@@ -24,6 +24,7 @@
 //! Not here: clocks, files, random numbers, pictures.
 
 mod hands;
+mod rest;
 
 use crate::button::{Button, Key};
 use crate::frame_clock::{FrameClock, Interval};
@@ -60,6 +61,15 @@ pub enum Event {
 pub enum Screen {
     /// The instructions, with a button to begin.
     Instructions,
+    /// The page with this index, which follows the instructions.
+    Page(usize),
+    /// A break.
+    Break {
+        /// How many seconds are left, rounded up.
+        left_s: u32,
+        /// Whether there is a button to go on.
+        can_go_on: bool,
+    },
     /// That a session that was cut off goes on, with a button.
     Resumed,
     /// That the practice is over, with a button to go on.
@@ -132,6 +142,8 @@ pub enum Ending {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum State {
     Instructions,
+    Page(usize),
+    Break,
     Resumed,
     PracticeOver,
     /// Grey before the picture with this index in the layout.
@@ -196,6 +208,7 @@ pub struct Session {
     showings: u32,
     response: Response,
     view: View,
+    rest: rest::Rest,
     clock: FrameClock,
     frames: FrameLog,
     /// What the latest frame showed.
@@ -221,6 +234,7 @@ impl Session {
             showings: 0,
             response: Response::default(),
             view: View::default(),
+            rest: rest::Rest::default(),
             clock: FrameClock::default(),
             frames: FrameLog::default(),
             drawn: None,
@@ -235,6 +249,8 @@ impl Session {
         }
         match self.state {
             State::Instructions => Screen::Instructions,
+            State::Page(page) => Screen::Page(page),
+            State::Break => self.rest_screen(),
             State::Resumed => Screen::Resumed,
             State::PracticeOver => Screen::PracticeOver,
             State::Pause(_) | State::Leaving(_) | State::Saving(_) => Screen::Blank,
@@ -277,6 +293,7 @@ impl Session {
     pub fn needs_frames(&self) -> bool {
         let is_timed = match self.state {
             State::Pause(_) | State::Exposure(_) | State::Leaving(_) | State::Saving(_) => true,
+            State::Break => !self.is_rest_over(),
             State::Rating => self.rules.longest_response_s.is_finite(),
             _ => false,
         };
@@ -401,6 +418,9 @@ impl Session {
 
     /// What time alone brings about.
     fn run(&mut self, at_s: f64) {
+        if self.state == State::Break {
+            self.rest.tell(at_s);
+        }
         if let (State::Leaving(given), Some(_)) = (self.state, self.view.shown_s) {
             self.wait_for_disk(given);
         } else if self.is_due(at_s) {
@@ -468,6 +488,7 @@ impl Session {
         match phase_of(self.trial) {
             None => self.go(State::Thanks),
             Some(Phase::Test) if before == Some(Phase::Practice) => self.go(State::PracticeOver),
+            Some(_) if self.is_rest_due() => self.begin_rest(at_s),
             Some(_) => self.begin_trial(at_s),
         }
     }

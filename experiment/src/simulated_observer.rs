@@ -70,7 +70,8 @@ impl SimulatedObserver {
         let mut answers = Vec::new();
         let mut now_s = 0.0;
         // Text screens, pauses and exposures, twice over, at 60 frames a second.
-        let per_trial_s = 10.0 * (self.rules.exposure_s + self.rules.pause_s + 1.0);
+        let break_s = self.rules.breaks.map_or(0.0, |breaks| breaks.seconds);
+        let per_trial_s = 10.0 * (self.rules.exposure_s + self.rules.pause_s + 1.0) + break_s;
         let most_frames = 60.0 * (per_trial_s * 2.0 * (trials.len() + 2) as f64);
         let mut frames = 0.0;
         while session.ending().is_none() {

@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use experiment::{
-    Button, Ending, Event, First, Key, Noted, Picture, Rules, Screen, Session, Trial,
+    Breaks, Button, Ending, Event, First, Key, Noted, Picture, Rules, Screen, Session, Trial,
 };
 use protocols::rating::Phase;
 use protocols::{Layout, RatingTime, ResponseStyle, Scale};
@@ -20,6 +20,8 @@ const FLANKING: Rules = Rules {
     rating: RatingTime::AfterExposure,
     shortest_response_s: 0.0,
     longest_response_s: f64::INFINITY,
+    pages: 0,
+    breaks: None,
 };
 
 fn trial(index: u32, phase: Phase) -> Trial {
@@ -673,4 +675,100 @@ fn the_frame_log_holds_every_frame() {
     let long_us: u64 = exposure.intervals_us.iter().sum();
     // 2 s less the frame that ends it: the interval to the first frame of the scale is not in the run.
     assert!((1_960_000..2_000_000).contains(&long_us), "{long_us}");
+}
+
+#[test]
+fn the_pages_follow_the_instructions_one_by_one() {
+    let mut screening = Screening::new(Rules {
+        pages: 2,
+        ..FLANKING
+    });
+    for page in 0..2 {
+        screening.click(Button::Continue);
+        screening.frames(2);
+        assert_eq!(screening.session.screen(), Screen::Page(page));
+    }
+    screening.key(Key::Enter);
+    assert_eq!(screening.session.screen(), Screen::Blank);
+    assert_eq!(screening.session.rated(), 0);
+}
+
+const BREAKS: Breaks = Breaks {
+    every: 2,
+    seconds: 5.0,
+    can_be_cut_short: false,
+};
+
+/// One practice trial and four of the study, a break after every second of these.
+fn with_breaks(breaks: Breaks) -> Screening {
+    let mut trials = three_trials();
+    trials.extend([trial(3, Phase::Test), trial(4, Phase::Test)]);
+    let rules = Rules {
+        breaks: Some(breaks),
+        ..FLANKING
+    };
+    let mut screening = Screening::new(FLANKING);
+    screening.session = Session::new(trials, 0, rules);
+    screening.frames(2);
+    screening
+}
+
+/// Rates until so many trials are done.
+fn rate(screening: &mut Screening, count: usize) {
+    while screening.session.rated() < count {
+        screening.frames(1);
+        match screening.session.screen() {
+            Screen::Rating => {
+                screening.frames(1);
+                screening.click(Button::Rating(4));
+                screening.saved();
+            }
+            Screen::Instructions | Screen::PracticeOver => screening.key(Key::Enter),
+            _ => {}
+        }
+    }
+}
+
+#[test]
+fn a_break_counts_down_and_cannot_be_left_before_it_is_over() {
+    let mut screening = with_breaks(BREAKS);
+    rate(&mut screening, 3);
+    let resting = |left_s, can_go_on| Screen::Break { left_s, can_go_on };
+    assert_eq!(screening.session.screen(), resting(5, false));
+    assert!(screening.session.needs_frames());
+    screening.click(Button::Continue);
+    screening.frames(120);
+    assert_eq!(screening.session.screen(), resting(3, false));
+    screening.key(Key::Enter);
+    assert_eq!(screening.session.screen(), resting(3, false));
+    // An escape and back does not begin it anew.
+    screening.key(Key::Escape);
+    screening.key(Key::Escape);
+    screening.frames(180);
+    assert_eq!(screening.session.screen(), resting(0, true));
+    assert!(!screening.session.needs_frames());
+    screening.click(Button::Continue);
+    screening.until_exposure();
+    let notes = noted(&mut screening);
+    assert!(notes.contains(&Noted::Break), "{notes:?}");
+    // None comes after the last trial.
+    rate(&mut screening, 5);
+    assert_eq!(screening.session.screen(), Screen::Thanks);
+}
+
+#[test]
+fn a_break_that_may_be_cut_short_has_its_button_from_the_start() {
+    let mut screening = with_breaks(Breaks {
+        can_be_cut_short: true,
+        ..BREAKS
+    });
+    rate(&mut screening, 3);
+    let resting = Screen::Break {
+        left_s: 5,
+        can_go_on: true,
+    };
+    assert_eq!(screening.session.screen(), resting);
+    screening.click(Button::Continue);
+    assert_eq!(screening.session.screen(), Screen::Blank);
+    screening.until_exposure();
 }

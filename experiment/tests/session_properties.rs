@@ -153,6 +153,8 @@ fn session(layout: Layout) -> Session {
         rating: RatingTime::AfterExposure,
         shortest_response_s: 0.0,
         longest_response_s: f64::INFINITY,
+        pages: 0,
+        breaks: None,
     };
     Session::new(trials, 0, rules)
 }
@@ -169,6 +171,8 @@ fn pairs() -> Session {
         rating: RatingTime::AfterExposure,
         shortest_response_s: 0.0,
         longest_response_s: f64::INFINITY,
+        pages: 0,
+        breaks: None,
     };
     Session::new(trials, 0, rules)
 }

@@ -13,11 +13,13 @@
 mod acuity;
 mod analysis_plan;
 mod atomic_file;
+mod break_plan;
 mod channel;
 mod data_set;
 mod export;
 mod follow_up_plan;
 mod input_error;
+mod intake_plan;
 mod manifest;
 mod model_observer;
 mod order_plan;
@@ -42,11 +44,13 @@ pub use analysis_plan::{
     AnalysisPlan, AsymptotePlan, Correction, Exclusion, Missing, PublishedEffect, SumsOfSquares,
 };
 pub use atomic_file::{Access, write_atomically};
+pub use break_plan::{BreakPlan, InstructionPage};
 pub use channel::{Channel, ChannelGroup, PerChannel};
 pub use data_set::{DataSet, Observer};
 pub use export::Export;
 pub use follow_up_plan::FollowUpPlan;
 pub use input_error::{InputError, ReadError};
+pub use intake_plan::{ConsentPlan, FieldKind, FormField, ScreeningPlan};
 pub use manifest::{Manifest, ManifestFile, ManifestStimulus, ViewingGeometry};
 pub use model_observer::{ModelObserver, NormalParameter};
 pub use order_plan::{LevelBlocks, OrderPlan, OrderScheme, RunLimit};

@@ -75,7 +75,7 @@ impl Protocol {
             .or_else(|| self.simulation.fault())
             .or_else(|| self.analysis.fault(&self.stimuli.factors()))
             .or_else(|| self.missing_anchors())
-            .or_else(|| self.unknown_practice_image())
+            .or_else(|| self.unknown_image())
     }
 
     fn missing_anchors(&self) -> Option<(&'static str, String, &'static str)> {
@@ -103,12 +103,16 @@ impl Protocol {
         }
     }
 
-    fn unknown_practice_image(&self) -> Option<(&'static str, String, &'static str)> {
+    fn unknown_image(&self) -> Option<(&'static str, String, &'static str)> {
         let images = self.stimuli.images();
         let is_unknown = |id: &&crate::StimulusId| images.iter().all(|image| image.id != **id);
-        let unknown = self.session.practice.iter().find(is_unknown)?;
+        let practice = self.session.practice.iter().find(is_unknown);
+        let mut pages = self.session.pages.iter().flat_map(|page| &page.pictures);
+        let unknown = practice.map(|id| ("session.practice", id));
+        let unknown = unknown.or_else(|| Some(("session.pages.pictures", pages.find(is_unknown)?)));
+        let (field, unknown) = unknown?;
         Some((
-            "session.practice",
+            field,
             format!("{:?}", unknown.as_str()),
             "images of the set, such as \"a140k_c140k\", or the name of a picture without .png",
         ))

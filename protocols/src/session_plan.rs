@@ -2,7 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{OrderPlan, RatingTime, ResponseStyle, StimulusId};
+use crate::intake_plan::form_fault;
+use crate::{
+    BreakPlan, ConsentPlan, FormField, InstructionPage, OrderPlan, RatingTime, ResponseStyle,
+    ScreeningPlan, StimulusId,
+};
 
 /// How the images are shown and rated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -40,6 +44,24 @@ pub struct SessionPlan {
     /// photodiode.
     #[serde(default)]
     pub photodiode: bool,
+    /// What the subject must agree to first.
+    #[serde(default)]
+    pub consent: Option<ConsentPlan>,
+    /// The questions of the form, in their order.
+    #[serde(default)]
+    pub form: Vec<FormField>,
+    /// Screening of colour vision and acuity.
+    #[serde(default)]
+    pub screening: Option<ScreeningPlan>,
+    /// Pages that follow the instructions.
+    #[serde(default)]
+    pub pages: Vec<InstructionPage>,
+    /// Breaks between the test trials.
+    #[serde(default)]
+    pub breaks: Option<BreakPlan>,
+    /// Whether the scale and the breaks say how much is done.
+    #[serde(default)]
+    pub progress: bool,
     /// The images of the practice trials, in the order in which they come.
     pub practice: Vec<StimulusId>,
     /// How often each image is rated: once in each block.
@@ -80,6 +102,11 @@ impl SessionPlan {
             .or_else(|| self.response_time_fault())
             .or_else(|| self.tolerance_fault())
             .or_else(|| self.order.fault())
+            .or_else(|| self.consent.as_ref()?.fault())
+            .or_else(|| form_fault(&self.form))
+            .or_else(|| self.screening.as_ref()?.fault())
+            .or_else(|| self.pages.iter().find_map(InstructionPage::fault))
+            .or_else(|| self.breaks.as_ref()?.fault())
     }
 
     fn response_fault(&self) -> Option<(&'static str, String, &'static str)> {
@@ -235,6 +262,12 @@ pub struct SessionTexts {
     /// Shown while the session rests (the key P).
     #[serde(default = "paused")]
     pub paused: String,
+    /// Above the form.
+    #[serde(default = "form")]
+    pub form: String,
+    /// Under a question whose answer cannot stand.
+    #[serde(default = "form_fault_text")]
+    pub form_fault: String,
     /// On the button that goes on.
     #[serde(default = "continue_button")]
     pub continue_button: String,
@@ -260,6 +293,14 @@ fn too_slow() -> String {
 
 fn paused() -> String {
     "A rest. Go on when you are ready.".to_owned()
+}
+
+fn form() -> String {
+    "Please answer a few questions.".to_owned()
+}
+
+fn form_fault_text() -> String {
+    "Please check this answer.".to_owned()
 }
 
 fn continue_button() -> String {

@@ -52,7 +52,10 @@ impl Session {
             return;
         }
         match (self.state, button) {
-            (State::Instructions | State::Resumed, Button::Continue) => self.enter_trial(at_s),
+            (State::Instructions, Button::Continue) => self.turn_page(0, at_s),
+            (State::Page(page), Button::Continue) => self.turn_page(page + 1, at_s),
+            (State::Break, Button::Continue) => self.end_rest(at_s),
+            (State::Resumed, Button::Continue) => self.enter_trial(at_s),
             (State::PracticeOver | State::TooSlow, Button::Continue) => self.begin_trial(at_s),
             (State::Thanks, Button::Continue) => self.go(State::Over(Ending::Complete)),
             (_, Button::Rating(rating))
@@ -77,6 +80,15 @@ impl Session {
                 self.response = Response::default();
                 self.go(seen);
             }
+        }
+    }
+
+    /// To this page, or to the first trial after the last.
+    fn turn_page(&mut self, page: usize, at_s: f64) {
+        if page < self.rules.pages {
+            self.go(State::Page(page));
+        } else {
+            self.enter_trial(at_s);
         }
     }
 

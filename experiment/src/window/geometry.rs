@@ -37,7 +37,12 @@ pub(crate) fn needed_px(plan: &SessionPlan, image_px: [u32; 2]) -> [u32; 2] {
         // The question stands at 0.78 of the height, with the scale below; the images are in the middle.
         RatingTime::DuringExposure => height.saturating_mul(2),
     };
-    [width, height]
+    let of_pages = plan.pages.iter().map(|page| {
+        let count = u32::try_from(page.pictures.len()).unwrap_or(u32::MAX);
+        let gaps = plan.gap_px.saturating_mul(count.saturating_sub(1));
+        image_px[0].saturating_mul(count).saturating_add(gaps)
+    });
+    [of_pages.max().unwrap_or(0).max(width), height]
 }
 
 /// A rectangle around a centre, with its corners on whole pixels.
@@ -82,10 +87,31 @@ impl Geometry {
         }
     }
 
+    /// Where so many pictures of a page stand: in a row, at their own size.
+    pub(crate) fn page_pictures(self, count: usize, image_px: Vec2, gap_px: f32) -> Vec<Rect> {
+        let middle = (self.size_px * vec2(0.5, 0.57)).to_pos2();
+        let step = image_px.x + gap_px;
+        let first = middle.x - step * (count as f32 - 1.0) / 2.0;
+        let place = |index: usize| pos2(first + step * index as f32, middle.y);
+        (0..count)
+            .map(|index| centred(place(index), image_px))
+            .collect()
+    }
+
+    /// The bar that says how much is done.
+    pub(crate) fn progress(self) -> Rect {
+        let middle = (self.size_px * vec2(0.5, 0.925)).to_pos2();
+        centred(middle, vec2(420.0, 10.0) * self.unit())
+    }
+
     /// The buttons of a screen.
     pub(crate) fn buttons(self, screen: Screen, plan: &SessionPlan) -> Vec<(Button, Rect)> {
         match screen {
             Screen::Instructions
+            | Screen::Page(_)
+            | Screen::Break {
+                can_go_on: true, ..
+            }
             | Screen::Resumed
             | Screen::PracticeOver
             | Screen::TooSlow
@@ -100,7 +126,9 @@ impl Geometry {
                     vec![(Button::Continue, self.wide_button(0.5, 0.89))]
                 }
             },
-            Screen::Blank | Screen::Exposure(..) | Screen::Thanks => Vec::new(),
+            Screen::Blank | Screen::Exposure(..) | Screen::Break { .. } | Screen::Thanks => {
+                Vec::new()
+            }
         }
     }
 

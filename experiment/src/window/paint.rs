@@ -11,6 +11,7 @@ use eframe::egui::{
     Align, Color32, ColorImage, Context, CornerRadius, FontId, Galley, Painter, Pos2, Rect, Stroke,
     StrokeKind, TextureHandle, TextureOptions, Vec2, pos2, vec2,
 };
+use protocols::rating::Phase;
 use protocols::{Layout, RatingTime, ResponseStyle, SessionPlan, Stimuli, StimulusId};
 
 use super::geometry::{Geometry, Slot};
@@ -101,7 +102,12 @@ impl Brush<'_> {
                     self.pair_name(session.part(), rect);
                 }
             }
+            Screen::Page(page) => self.instruction_page(page, pictures),
+            Screen::Break { left_s, .. } => self.rest(left_s),
             Screen::Rating | Screen::Blank => {}
+        }
+        if self.plan.progress && matches!(screen, Screen::Rating | Screen::Break { .. }) {
+            self.progress(session);
         }
         if screen.has_scale() {
             self.scale(screen, session.response());
@@ -109,6 +115,60 @@ impl Brush<'_> {
         for (button, rect) in self.geometry.buttons(screen, self.plan) {
             self.button(button, rect, session.pressed());
         }
+    }
+
+    /// A page with pictures below its words, which stand above the middle of what is left.
+    fn instruction_page(&self, index: usize, pictures: &Pictures) {
+        let Some(page) = self.plan.pages.get(index) else {
+            return;
+        };
+        if page.pictures.is_empty() {
+            return self.page(&page.text, 0.43);
+        }
+        let [width, height] = pictures.image_px.map(|pixels| pixels as f32);
+        let gap_px = self.plan.gap_px as f32;
+        let count = page.pictures.len();
+        let places = self
+            .geometry
+            .page_pictures(count, vec2(width, height), gap_px);
+        let top = places.first().map_or(0.0, Rect::top);
+        self.page(&page.text, f32::midpoint(0.05, top / self.geometry.size_px.y));
+        for (index, (id, place)) in page.pictures.iter().zip(places).enumerate() {
+            self.texture(pictures.textures.get(id), place);
+            if let Some(caption) = page.captions.get(index) {
+                let below = place.center_bottom() + vec2(0.0, 30.0 * self.geometry.unit());
+                self.centred(self.galley(caption, 26.0, width, Align::Center), below);
+            }
+        }
+    }
+
+    /// A break: its words, and the minutes and seconds that are left.
+    fn rest(&self, left_s: u32) {
+        if let Some(plan) = &self.plan.breaks {
+            self.page(&plan.text, 0.36);
+        }
+        let left = format!("{}:{:02}", left_s / 60, left_s % 60);
+        self.line(&left, 72.0, 0.55);
+    }
+
+    /// How many of the test trials are rated.
+    fn progress(&self, session: &Session) {
+        let is_test = |trial: &&crate::Trial| trial.phase == Phase::Test;
+        let count =
+            |trials: &[crate::Trial]| u16::try_from(trials.iter().filter(is_test).count()).ok();
+        let whole = count(session.trials()).unwrap_or(u16::MAX);
+        let done = count(&session.trials()[..session.rated()]).unwrap_or(whole);
+        let bar = self.geometry.progress();
+        self.fill(bar, Color32::from_gray(165));
+        let part = f32::from(done) / f32::from(whole.max(1));
+        let length = vec2(bar.width() * part, bar.height());
+        self.fill(Rect::from_min_size(bar.min, length), INK);
+        let words = format!("{done} / {whole}");
+        let below = bar.center_bottom() + vec2(0.0, 24.0 * self.geometry.unit());
+        self.centred(
+            self.galley(&words, 24.0, f32::INFINITY, Align::Center),
+            below,
+        );
     }
 
     /// The corner for a photodiode: white while the test image stands.
@@ -164,7 +224,12 @@ impl Brush<'_> {
 
     fn image(&self, slot: Slot, rect_px: Rect, test_image: &StimulusId, pictures: &Pictures) {
         let id = pictures.id(slot, test_image);
-        if let Some(texture) = id.and_then(|id| pictures.textures.get(id)) {
+        self.texture(id.and_then(|id| pictures.textures.get(id)), rect_px);
+    }
+
+    /// A whole texture, pixel for pixel.
+    fn texture(&self, texture: Option<&TextureHandle>, rect_px: Rect) {
+        if let Some(texture) = texture {
             let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
             let rect = self.geometry.points(rect_px);
             self.painter
