@@ -8,6 +8,8 @@
 //! coordinates from 0 to 1 with x to the right and y down, spectra as power per nm. A number without a
 //! type carries its unit in its name.
 //!
+//! Colour has one home here too: the opponent space of the paper, and the way from it to sRGB.
+//!
 //! Not here: how a ray, a session or a test statistic is computed.
 
 mod acuity;
@@ -21,7 +23,9 @@ mod follow_up_plan;
 mod input_error;
 mod intake_plan;
 mod manifest;
+pub mod matrix3;
 mod model_observer;
+pub mod opponent;
 mod order_plan;
 mod picture_manifest;
 mod picture_set;
@@ -32,6 +36,7 @@ mod ray_count;
 mod response_plan;
 mod session_plan;
 mod sha256;
+pub mod srgb;
 mod stimuli;
 mod stimulus;
 mod stimulus_plan;

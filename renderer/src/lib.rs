@@ -26,8 +26,6 @@ mod jitter;
 mod leaf_map;
 mod leaves;
 mod lighting;
-mod matrix3;
-mod opponent;
 mod opponent_exr;
 mod picture_set;
 #[cfg(test)]
@@ -48,13 +46,14 @@ mod set_summary;
 mod shader;
 mod spectra;
 mod spectral_image;
-mod srgb;
 mod srgb_png;
 mod stimulus_set;
 mod threads;
 mod tints;
 mod triangle_mesh;
 mod watch;
+
+use protocols::{matrix3, opponent, srgb};
 
 pub use account::RayAccount;
 pub use acuity_limits::{AcuityLimit, AcuityLimits};

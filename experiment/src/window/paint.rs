@@ -132,7 +132,10 @@ impl Brush<'_> {
             .geometry
             .page_pictures(count, vec2(width, height), gap_px);
         let top = places.first().map_or(0.0, Rect::top);
-        self.page(&page.text, f32::midpoint(0.05, top / self.geometry.size_px.y));
+        self.page(
+            &page.text,
+            f32::midpoint(0.05, top / self.geometry.size_px.y),
+        );
         for (index, (id, place)) in page.pictures.iter().zip(places).enumerate() {
             self.texture(pictures.textures.get(id), place);
             if let Some(caption) = page.captions.get(index) {

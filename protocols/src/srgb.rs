@@ -8,8 +8,8 @@
 ///
 /// ```
 /// // Mid-grey: 255 · (1.055 · 0.2158605^(1/2.4) − 0.055) = 128.0, by the formula of the standard.
-/// assert_eq!(renderer::srgb_encode(0.215_860_5), 128);
-/// assert_eq!((renderer::srgb_encode(-0.1), renderer::srgb_encode(1.1)), (0, 255));
+/// assert_eq!(protocols::srgb::srgb_encode(0.215_860_5), 128);
+/// assert_eq!((protocols::srgb::srgb_encode(-0.1), protocols::srgb::srgb_encode(1.1)), (0, 255));
 /// ```
 pub fn srgb_encode(linear: f64) -> u8 {
     let code = 255.0 * encoded(linear.clamp(0.0, 1.0));
@@ -23,7 +23,7 @@ pub fn srgb_encode(linear: f64) -> u8 {
 }
 
 /// The 16-bit code of a linear primary: the transfer curve, rounded to the nearest code, clipped.
-pub(crate) fn srgb_encode_16(linear: f64) -> u16 {
+pub fn srgb_encode_16(linear: f64) -> u16 {
     let code = 65_535.0 * encoded(linear.clamp(0.0, 1.0));
     #[expect(
         clippy::cast_possible_truncation,
@@ -38,10 +38,10 @@ pub(crate) fn srgb_encode_16(linear: f64) -> u16 {
 /// that rounding would hide.
 ///
 /// ```
-/// assert!(!renderer::is_out_of_srgb_gamut([0.0, 0.5, 1.0]));
-/// assert!(!renderer::is_out_of_srgb_gamut([-0.000_1, 0.5, 1.004]));
-/// assert!(renderer::is_out_of_srgb_gamut([-0.000_2, 0.5, 1.0]));
-/// assert!(renderer::is_out_of_srgb_gamut([0.0, 0.5, 1.005]));
+/// assert!(!protocols::srgb::is_out_of_srgb_gamut([0.0, 0.5, 1.0]));
+/// assert!(!protocols::srgb::is_out_of_srgb_gamut([-0.000_1, 0.5, 1.004]));
+/// assert!(protocols::srgb::is_out_of_srgb_gamut([-0.000_2, 0.5, 1.0]));
+/// assert!(protocols::srgb::is_out_of_srgb_gamut([0.0, 0.5, 1.005]));
 /// ```
 pub fn is_out_of_srgb_gamut(linear: [f64; 3]) -> bool {
     let is_shown = |&primary: &f64| (-0.5..=255.5).contains(&(255.0 * encoded(primary)));
@@ -58,7 +58,7 @@ fn encoded(linear: f64) -> f64 {
 }
 
 /// The linear primary of an encoded one from 0 to 1: the inverse of the transfer curve.
-pub(crate) fn srgb_decoded(encoded: f64) -> f64 {
+pub fn srgb_decoded(encoded: f64) -> f64 {
     if encoded <= 0.040_45 {
         encoded / 12.92
     } else {

@@ -4,11 +4,11 @@
 //! (x = 0.3127, y = 0.3290). Both matrices of the paper are as printed; the inverse of Eq. 2 and the
 //! product with the matrix of sRGB are worked out by the compiler.
 //!
-//! Not here: the spectral curves (`sensitivity`) and the transfer curve of sRGB (`srgb`).
+//! Not here: the spectral curves (the renderer's) and the transfer curve of sRGB ([`crate::srgb`]).
 //!
 //! Sources: Meyer & Liu (1992), Eqs. 1 and 2; IEC 61966-2-1 for sRGB.
 
-use protocols::PerChannel;
+use crate::PerChannel;
 
 use crate::matrix3::{self, Matrix3};
 
@@ -70,7 +70,7 @@ pub fn xyz_from_ac1c2(ac1c2: PerChannel<f64>) -> [f64; 3] {
 /// use protocols::PerChannel;
 /// // The display's white in the opponent space, by color_reference.py (numpy): red, green, blue at full.
 /// let white = PerChannel { a: 1.000_127_051_671_732_4, c1: -0.029_272_127_659_574_1, c2: 0.553_738_723_404_255_2 };
-/// for primary in renderer::linear_srgb_from_ac1c2(white) {
+/// for primary in protocols::opponent::linear_srgb_from_ac1c2(white) {
 ///     assert!((primary - 1.0).abs() < 1e-12);
 /// }
 /// ```

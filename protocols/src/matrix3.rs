@@ -6,7 +6,7 @@
 pub type Matrix3 = [[f64; 3]; 3];
 
 /// `matrix · vector`.
-pub(crate) const fn times(matrix: &Matrix3, vector: [f64; 3]) -> [f64; 3] {
+pub const fn times(matrix: &Matrix3, vector: [f64; 3]) -> [f64; 3] {
     let [x, y, z] = vector;
     let [a, b, c] = matrix;
     [
@@ -17,7 +17,7 @@ pub(crate) const fn times(matrix: &Matrix3, vector: [f64; 3]) -> [f64; 3] {
 }
 
 /// The product `left · right`.
-pub(crate) const fn product(left: &Matrix3, right: &Matrix3) -> Matrix3 {
+pub const fn product(left: &Matrix3, right: &Matrix3) -> Matrix3 {
     let columns = transpose(right);
     transpose(&[
         times(left, columns[0]),
@@ -27,20 +27,20 @@ pub(crate) const fn product(left: &Matrix3, right: &Matrix3) -> Matrix3 {
 }
 
 /// The matrix with its rows as columns.
-pub(crate) const fn transpose(matrix: &Matrix3) -> Matrix3 {
+pub const fn transpose(matrix: &Matrix3) -> Matrix3 {
     let [a, b, c] = matrix;
     [[a[0], b[0], c[0]], [a[1], b[1], c[1]], [a[2], b[2], c[2]]]
 }
 
 /// The determinant.
-pub(crate) const fn determinant(matrix: &Matrix3) -> f64 {
+pub const fn determinant(matrix: &Matrix3) -> f64 {
     let [a, b, c] = matrix;
     a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
         + a[2] * (b[0] * c[1] - b[1] * c[0])
 }
 
 /// The inverse, by cofactors; not finite if the determinant is zero.
-pub(crate) const fn inverse(matrix: &Matrix3) -> Matrix3 {
+pub const fn inverse(matrix: &Matrix3) -> Matrix3 {
     let [a, b, c] = matrix;
     let scale = 1.0 / determinant(matrix);
     [
