@@ -3,7 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use analysis::PrintedF;
+use analysis::{EffectScale, PrintedF};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use protocols::{
     Channel, Export, FollowUpPlan, Missing, Observer, Quadrature, RayCount, RefinementDriver,
@@ -44,6 +44,8 @@ pub(crate) enum Command {
     Export(ExportArguments),
     /// Let simulated observers sit the same session.
     Simulate(SimulateArguments),
+    /// How many subjects does the study need? Simulated studies of each size, analysed as the protocol says.
+    Power(PowerArguments),
     /// Analyse the ratings of a study and write the report.
     Report(ReportArguments),
     /// Analysis of variance of any table in long format.
@@ -279,6 +281,94 @@ pub(crate) struct SimulateArguments {
     /// Replace the simulated ratings that are there.
     #[arg(long)]
     pub(crate) replace: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PowerArguments {
+    /// The protocol file.
+    pub(crate) protocol: PathBuf,
+    /// Numbers of subjects: 6..30, 6..30/4 (every fourth), or 12.
+    #[arg(long, default_value = "6..30/3", value_name = "RANGE", value_parser = subject_range)]
+    pub(crate) subjects: SubjectRange,
+    /// Simulated studies for each number of subjects.
+    #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u32).range(20..=1_000_000))]
+    pub(crate) studies: u32,
+    /// Make an effect of the images' qualities larger or smaller, such as "channel=0.5" or "channel:rays=0". May be repeated.
+    #[arg(long, value_name = "EFFECT=FACTOR", value_parser = effect_scale)]
+    pub(crate) effect: Vec<EffectScale>,
+    /// The level of significance.
+    #[arg(long, default_value_t = 0.05, value_parser = share)]
+    pub(crate) alpha: f64,
+    /// The power that is wanted.
+    #[arg(long, default_value_t = 0.8, value_parser = share)]
+    pub(crate) target: f64,
+    /// How often the subjects of a study are drawn again for the interval of an asymptote.
+    #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u32).range(200..=100_000))]
+    pub(crate) resamples: u32,
+    /// The seed of the observers and of the resampled subjects.
+    #[arg(long, default_value_t = 1992)]
+    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) stimuli: StimuliFolder,
+    /// Folder for power.csv, power.json and power.svg [default: reports/STUDY-power]
+    #[arg(long)]
+    pub(crate) out: Option<PathBuf>,
+    /// Print JSON, and write no files.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Numbers of subjects from a first to a last, with the same step between.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct SubjectRange {
+    first: u32,
+    last: u32,
+    step: u32,
+}
+
+impl SubjectRange {
+    /// Every number, rising; the last whether or not a step leads to it.
+    pub(crate) fn numbers(self) -> Vec<u32> {
+        let mut numbers: Vec<u32> = (self.first..=self.last)
+            .step_by(self.step as usize)
+            .collect();
+        if numbers.last() != Some(&self.last) {
+            numbers.push(self.last);
+        }
+        numbers
+    }
+}
+
+fn subject_range(text: &str) -> Result<SubjectRange, String> {
+    let parse = || {
+        let (range, step) = text.split_once('/').unwrap_or((text, "1"));
+        let (first, last) = range.split_once("..").unwrap_or((range, range));
+        let [first, last, step] = [first.parse().ok()?, last.parse().ok()?, step.parse().ok()?];
+        let is_usable = 2 <= first && first <= last && last <= 1000 && step > 0;
+        is_usable.then_some(SubjectRange { first, last, step })
+    };
+    parse().ok_or_else(|| {
+        format!("found {text:?}, expected FIRST..LAST or FIRST..LAST/STEP with 2 to 1000 subjects, such as 6..30/3")
+    })
+}
+
+fn effect_scale(text: &str) -> Result<EffectScale, String> {
+    let parse = || {
+        let (effect, factor) = text.rsplit_once('=')?;
+        Some(EffectScale {
+            effect: effect.trim().to_owned(),
+            factor: factor.trim().parse().ok()?,
+        })
+    };
+    parse().ok_or_else(|| format!("found {text:?}, expected EFFECT=FACTOR, such as channel=0.5"))
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let share = text
+        .parse()
+        .ok()
+        .filter(|share: &f64| *share > 0.0 && *share < 1.0);
+    share.ok_or_else(|| format!("found {text:?}, expected a number above 0 and below 1"))
 }
 
 #[derive(Debug, Args)]

@@ -11,6 +11,7 @@ mod follow_up;
 mod image;
 mod interrupt;
 mod memory;
+mod power;
 mod render;
 mod replicate;
 mod sit;
@@ -50,6 +51,7 @@ fn run(command: Command, progress: Progress) -> anyhow::Result<ExitCode> {
         Command::Station(arguments) => station::measure(&arguments)?,
         Command::Export(arguments) => sit::export(&arguments)?,
         Command::Simulate(arguments) => sit::simulate(&arguments, progress)?,
+        Command::Power(arguments) => power::power(&arguments, progress)?,
         Command::Report(arguments) => analyse::report(&arguments)?,
         Command::Anova(arguments) => analyse::anova(&arguments)?,
         Command::Replicate(arguments) => replicate::replicate(&arguments, progress)?,

@@ -15,7 +15,9 @@ use crate::chi_scale::normal_cdf;
 use crate::factor_place::FactorPlace;
 use crate::interval::{mean, standard_deviation};
 use crate::permutation::below;
-use crate::plateau::{PlateauFit, exponential, linear_plateau, quadratic_plateau, straight_line};
+use crate::plateau::{
+    PlateauFinder, PlateauFit, exponential, linear_plateau, quadratic_plateau, straight_line,
+};
 use crate::polynomial::scores_of_levels;
 use crate::tail::{f_tail, t_quantile};
 
@@ -157,6 +159,77 @@ impl Asymptotes {
         by: Option<&str>,
         settings: AsymptoteSettings,
     ) -> Result<Self, InputError> {
+        let sought = Sought::new(cells, factor, by)?;
+        let resampled = sought.resampled(settings);
+        let found: Vec<Asymptote> = (sought.curves.iter().zip(&resampled))
+            .map(|(curve, resampled)| curve.asymptote(&sought.x, resampled, settings))
+            .collect();
+        let estimates: Vec<(usize, Estimate)> =
+            found.iter().map(|curve| (curve.n, curve.psi)).collect();
+        Ok(Self {
+            factor: factor.to_owned(),
+            by: by.map(str::to_owned),
+            unit: sought.unit,
+            difference: difference(&estimates, &resampled, settings.confidence),
+            settings,
+            curves: found,
+        })
+    }
+}
+
+/// The plateau points alone, without other shapes and equivalence tests.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct PlateauPoints {
+    /// The unit after the numbers of the levels.
+    pub(crate) unit: String,
+    /// The level whose curve it is, and its plateau point.
+    pub(crate) curves: Vec<(String, Estimate)>,
+    /// The first less the second, where there are two.
+    pub(crate) difference: Option<Estimate>,
+}
+
+impl PlateauPoints {
+    /// As [`Asymptotes::new`] finds them.
+    pub(crate) fn new(
+        cells: &CellMatrix,
+        factor: &str,
+        by: Option<&str>,
+        settings: AsymptoteSettings,
+    ) -> Result<Self, InputError> {
+        let sought = Sought::new(cells, factor, by)?;
+        let resampled = sought.resampled(settings);
+        let estimates: Vec<(usize, Estimate)> = (sought.curves.iter().zip(&resampled))
+            .map(|(curve, resampled)| {
+                let n = curve.ratings.nrows();
+                let [low, high] = expanded_percentile_interval(resampled, n, settings.confidence);
+                let value = linear_plateau(&sought.x, &curve.means()).psi;
+                (n, Estimate { value, low, high })
+            })
+            .collect();
+        let difference = difference(&estimates, &resampled, settings.confidence);
+        let levels = sought.curves.into_iter().map(|curve| curve.level);
+        Ok(Self {
+            unit: sought.unit,
+            curves: levels
+                .zip(estimates.into_iter().map(|(_, psi)| psi))
+                .collect(),
+            difference,
+        })
+    }
+}
+
+/// Curves whose asymptote is sought.
+struct Sought {
+    /// The levels as numbers.
+    x: Vec<f64>,
+    unit: String,
+    curves: Vec<Curve>,
+    /// Whether the curves are of the same subjects.
+    is_paired: bool,
+}
+
+impl Sought {
+    fn new(cells: &CellMatrix, factor: &str, by: Option<&str>) -> Result<Self, InputError> {
         let place = FactorPlace::find(cells, factor)?;
         let levels = place.levels(cells);
         let scores =
@@ -178,38 +251,41 @@ impl Asymptotes {
                 "at least three, to seek an asymptote",
             ));
         }
-        let is_paired = by.is_none_or(|by| cells.within.iter().any(|factor| factor.name == by));
-        let resampled: Vec<Vec<f64>> = (curves.iter().enumerate())
+        Ok(Self {
+            x,
+            unit: unit.to_owned(),
+            curves,
+            is_paired: by.is_none_or(|by| cells.within.iter().any(|factor| factor.name == by)),
+        })
+    }
+
+    /// For each curve the plateau points of subjects drawn again.
+    fn resampled(&self, settings: AsymptoteSettings) -> Vec<Vec<f64>> {
+        (self.curves.iter().enumerate())
             .map(|(index, curve)| {
                 let mut random = ChaCha8Rng::seed_from_u64(settings.seed);
                 // Curves of the same subjects share their draws.
-                random.set_stream(if is_paired { 0 } else { index as u64 });
-                curve.resampled_psi(&x, settings.n_resamples, &mut random)
+                random.set_stream(if self.is_paired { 0 } else { index as u64 });
+                curve.resampled_psi(&self.x, settings.n_resamples, &mut random)
             })
-            .collect();
-        let found: Vec<Asymptote> = (curves.iter().zip(&resampled))
-            .map(|(curve, resampled)| curve.asymptote(&x, resampled, settings))
-            .collect();
-        Ok(Self {
-            factor: factor.to_owned(),
-            by: by.map(str::to_owned),
-            unit: unit.to_owned(),
-            difference: difference(&found, &resampled, settings.confidence),
-            settings,
-            curves: found,
-        })
+            .collect()
     }
 }
 
-fn difference(found: &[Asymptote], resampled: &[Vec<f64>], confidence: f64) -> Option<Estimate> {
+/// The first plateau point less the second; each estimate stands with its number of subjects.
+fn difference(
+    found: &[(usize, Estimate)],
+    resampled: &[Vec<f64>],
+    confidence: f64,
+) -> Option<Estimate> {
     let ([first, second], [of_first, of_second]) = (found, resampled) else {
         return None;
     };
     let differences: Vec<f64> = of_first.iter().zip(of_second).map(|(a, b)| a - b).collect();
-    let n = first.n.min(second.n);
+    let n = first.0.min(second.0);
     let [low, high] = expanded_percentile_interval(&differences, n, confidence);
     Some(Estimate {
-        value: first.psi.value - second.psi.value,
+        value: first.1.value - second.1.value,
         low,
         high,
     })
@@ -262,26 +338,27 @@ impl Curve {
         self.ratings.row_mean().iter().copied().collect()
     }
 
+    /// The plateau points of the mean curves of subjects drawn again.
     fn resampled_psi(&self, x: &[f64], n_resamples: u32, random: &mut ChaCha8Rng) -> Vec<f64> {
         let n = self.ratings.nrows();
+        let by_subject = self.ratings.transpose();
+        let finder = PlateauFinder::new(x);
+        let mut means = vec![0.0; x.len()];
         (0..n_resamples)
             .map(|_| {
-                let drawn: Vec<usize> = (0..n).map(|_| below(random, n)).collect();
-                self.psi_of(x, &drawn)
+                means.fill(0.0);
+                for _ in 0..n {
+                    let drawn = by_subject.column(below(random, n));
+                    for (mean, rating) in means.iter_mut().zip(drawn.iter()) {
+                        *mean += rating;
+                    }
+                }
+                for mean in &mut means {
+                    *mean /= n as f64;
+                }
+                finder.psi(&means)
             })
             .collect()
-    }
-
-    /// The plateau point of the mean curve of the subjects `drawn`.
-    fn psi_of(&self, x: &[f64], drawn: &[usize]) -> f64 {
-        let mut sums = vec![0.0; x.len()];
-        for &subject in drawn {
-            for (sum, rating) in sums.iter_mut().zip(self.ratings.row(subject).iter()) {
-                *sum += rating;
-            }
-        }
-        let means: Vec<f64> = sums.iter().map(|sum| sum / drawn.len() as f64).collect();
-        linear_plateau(x, &means).psi
     }
 
     fn asymptote(&self, x: &[f64], resampled: &[f64], settings: AsymptoteSettings) -> Asymptote {

@@ -1,13 +1,13 @@
 //! The means of a design of any within factors: one factor along x, a line for each combination of the others.
 //!
-//! Written as SVG directly, so that the bytes depend on nothing but the numbers. Colour, marker and dash each
-//! tell the lines apart as far as there are six; more lines repeat them.
+//! Written as SVG directly, so that the bytes depend on nothing but the numbers. `LineStyle` tells the lines apart.
 
 use std::fmt::Write as _;
 
 use protocols::Scale;
 
 use crate::figure::{Palette, WIDTH};
+use crate::line_style::LineStyle;
 use crate::page::escaped;
 use crate::picture_analysis::{Mean, PictureAnalysis};
 
@@ -19,12 +19,6 @@ const BOTTOM: f64 = 330.0;
 const LEGEND_STEP: f64 = 20.0;
 /// How far lines stand apart, so that their bars do not cover each other.
 const DODGE: f64 = 5.0;
-/// Okabe & Ito (2008), without black and yellow: legible on white and for any colour vision.
-const COLORS: [&str; 6] = [
-    "#0072b2", "#c64b00", "#009e73", "#a6568a", "#56b4e9", "#8a6d00",
-];
-const DASHES: [&str; 3] = ["", "5 3", "2 3"];
-
 /// What the figure shows.
 #[derive(Debug)]
 pub(crate) struct CellFigure<'a> {
@@ -56,7 +50,7 @@ impl CellFigure<'_> {
             self.line(&mut svg, place, dodge, cells);
             if legend > 0 {
                 let y = LEGEND_STEP.mul_add(place as f64, BOTTOM + 70.0);
-                self.key(&mut svg, place, y, name);
+                LineStyle::new(place, self.palette).key(&mut svg, [LEFT, y], name);
             }
         }
         svg.push_str("</svg>\n");
@@ -142,74 +136,26 @@ impl CellFigure<'_> {
 
     fn line(&self, svg: &mut String, place: usize, dodge: f64, cells: &[&Mean<Vec<String>>]) {
         let along_x = self.along_x();
+        let style = LineStyle::new(place, self.palette);
         let at = |cell: &Mean<Vec<String>>| {
-            (self.x(&cell.of[along_x]) + dodge, self.y(cell.summary.mean))
+            [self.x(&cell.of[along_x]) + dodge, self.y(cell.summary.mean)]
         };
-        let points: Vec<String> = (cells.iter())
-            .map(|cell| at(cell))
-            .map(|(x, y)| format!("{x:.2},{y:.2}"))
-            .collect();
-        _ = writeln!(
-            svg,
-            "<g {}><polyline points=\"{}\" stroke-dasharray=\"{}\"/>",
-            group(place),
-            points.join(" "),
-            DASHES[place % DASHES.len()]
-        );
+        let points: Vec<[f64; 2]> = cells.iter().map(|cell| at(cell)).collect();
+        style.open(svg);
+        style.path(svg, &points);
         for cell in cells {
-            let (x, y) = at(cell);
             if let Some(half) = cell.summary.half_within {
                 let [low, high] = [cell.summary.mean - half, cell.summary.mean + half];
                 _ = writeln!(
                     svg,
-                    "<path d=\"M{x:.2},{:.2}V{:.2}\" stroke-width=\"1.1\"/>",
+                    "<path d=\"M{:.2},{:.2}V{:.2}\" stroke-width=\"1.1\"/>",
+                    at(cell)[0],
                     self.y(low),
                     self.y(high)
                 );
             }
-            self.marker(svg, place, x, y);
+            style.marker(svg, at(cell));
         }
         svg.push_str("</g>\n");
     }
-
-    fn key(&self, svg: &mut String, place: usize, y: f64, name: &str) {
-        _ = write!(
-            svg,
-            "<g {}><path d=\"M{LEFT},{y}h36\" stroke-dasharray=\"{}\"/>",
-            group(place),
-            DASHES[place % DASHES.len()]
-        );
-        self.marker(svg, place, LEFT + 18.0, y);
-        _ = writeln!(
-            svg,
-            "</g><text x=\"{}\" y=\"{}\" style=\"fill:{}\">{}</text>",
-            LEFT + 46.0,
-            y + 4.5,
-            self.palette.ink,
-            escaped(name)
-        );
-    }
-
-    /// A square, a diamond or a circle, filled or open.
-    fn marker(&self, svg: &mut String, place: usize, x: f64, y: f64) {
-        let fill = if place.is_multiple_of(2) {
-            COLORS[place % COLORS.len()]
-        } else {
-            self.palette.paper
-        };
-        let path = match place % 3 {
-            0 => format!("M{:.2},{:.2}h8v8h-8z", x - 4.0, y - 4.0),
-            1 => format!("M{:.2},{y:.2}l5.5,-5.5l5.5,5.5l-5.5,5.5z", x - 5.5),
-            _ => format!(
-                "M{:.2},{y:.2}a4.5,4.5 0 1 0 9,0a4.5,4.5 0 1 0 -9,0z",
-                x - 4.5
-            ),
-        };
-        _ = writeln!(svg, "<path d=\"{path}\" style=\"fill:{fill}\"/>");
-    }
-}
-
-fn group(place: usize) -> String {
-    let color = COLORS[place % COLORS.len()];
-    format!("style=\"stroke:{color}\" stroke-width=\"1.5\" fill=\"none\"")
 }

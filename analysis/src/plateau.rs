@@ -39,6 +39,67 @@ pub fn linear_plateau(x: &[f64], y: &[f64]) -> PlateauFit {
     best(&candidates, |psi| fit_at(x, y, psi, 1))
 }
 
+/// The plateau points of many curves over the same levels, as [`linear_plateau`] finds them, from running sums:
+/// each place is tried in constant time.
+#[derive(Clone, Debug)]
+pub(crate) struct PlateauFinder {
+    centre: f64,
+    /// Levels less their mean.
+    x: Vec<f64>,
+    /// Of the first *j* of them, the sum and the sum of squares.
+    sums: Vec<[f64; 2]>,
+}
+
+impl PlateauFinder {
+    pub(crate) fn new(levels: &[f64]) -> Self {
+        let centre = mean(levels);
+        let x: Vec<f64> = levels.iter().map(|level| level - centre).collect();
+        let mut sums = vec![[0.0, 0.0]];
+        for (j, x) in x.iter().enumerate() {
+            let [sum, squares] = sums[j];
+            sums.push([sum + x, x.mul_add(*x, squares)]);
+        }
+        Self { centre, x, sums }
+    }
+
+    /// The plateau point of the means `y`.
+    pub(crate) fn psi(&self, y: &[f64]) -> f64 {
+        let (height, n) = (mean(y), self.x.len());
+        let (mut sy, mut sxy) = (y[0] - height, self.x[0] * (y[0] - height));
+        let total: f64 = y.iter().map(|y| (y - height).powi(2)).sum();
+        let mut best = (self.x[1], self.explained(self.x[1], 1, [sy, sxy]));
+        let mut try_at = |psi: f64, j: usize, of_y: [f64; 2]| {
+            let explained = self.explained(psi, j, of_y);
+            if explained > best.1 + 1e-12 * (total - best.1) {
+                best = (psi, explained);
+            }
+        };
+        for j in 2..n {
+            let below = y[j - 1] - height;
+            (sy, sxy) = (sy + below, self.x[j - 1].mul_add(below, sxy));
+            let [sx, sxx] = self.sums[j];
+            let count = j as f64;
+            let slope = (sxy - sx * sy / count) / (sxx - sx * sx / count);
+            let rest = -sy / (n - j) as f64;
+            let crossing = sx / count + (rest - sy / count) / slope;
+            if crossing >= self.x[j - 1] && crossing <= self.x[j] {
+                try_at(crossing, j, [sy, sxy]);
+            }
+            try_at(self.x[j], j, [sy, sxy]);
+        }
+        best.0 + self.centre
+    }
+
+    /// The sum of squares that the best plateau with this corner explains; *j* levels lie below it.
+    fn explained(&self, psi: f64, j: usize, [sy, sxy]: [f64; 2]) -> f64 {
+        let ([sx, sxx], count) = (self.sums[j], j as f64);
+        let sum = count.mul_add(psi, -sx);
+        let squares = psi * count.mul_add(psi, -2.0 * sx) + sxx;
+        let product = psi.mul_add(sy, -sxy);
+        product * product / (squares - sum * sum / self.x.len() as f64)
+    }
+}
+
 /// The quadratic plateau y = level − slope max(0, psi − x)²: no corner at psi.
 pub(crate) fn quadratic_plateau(x: &[f64], y: &[f64]) -> PlateauFit {
     let mut candidates: Vec<f64> = x[1..].to_vec();
@@ -190,5 +251,25 @@ mod tests {
             .fold(f64::INFINITY, f64::min);
         let fit = linear_plateau(&X, &y);
         assert!(fit.sse <= scan && scan - fit.sse < 1e-4, "{fit:?} {scan}");
+    }
+
+    #[test]
+    fn running_sums_find_the_same_plateau() {
+        use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(1966);
+        let finder = PlateauFinder::new(&X);
+        for case in 0..2000 {
+            // Half of them of whole numbers, where ties are frequent.
+            let y: Vec<f64> = (0..X.len())
+                .map(|_| match case % 2 {
+                    0 => f64::from(random.next_u32() % 5),
+                    _ => f64::from(random.next_u32()) / 1e9,
+                })
+                .collect();
+            let (slow, fast) = (linear_plateau(&X, &y), finder.psi(&y));
+            let is_as_good = fit_at(&X, &y, fast, 1).sse <= slow.sse * (1.0 + 1e-9) + 1e-9;
+            assert!(is_as_good, "{y:?}: {fast} and {slow:?}");
+            assert!((slow.psi - fast).abs() < 1e-6, "{y:?}: {fast} and {slow:?}");
+        }
     }
 }

@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 
 use protocols::{
-    InputError, ModelObserver, NormalParameter, Protocol, Stimuli, StimulusId, SubjectId,
+    InputError, ModelObserver, NormalParameter, Protocol, Scale, Stimuli, StimulusId, SubjectId,
 };
 
 use crate::random::Random;
@@ -154,13 +154,19 @@ impl SimulatedObserver {
             )
         })?;
         let scale = self.rules.scale;
-        let centre = f64::midpoint(f64::from(scale.lowest), f64::from(scale.highest));
         let noise = draw(&mut self.random, self.model.noise);
         let ModelTraits { bias, gain, .. } = self.traits;
-        Ok(scale.nearest(centre + gain * (quality.on_scale - centre) + bias + noise))
+        let felt = perceived(scale, quality.on_scale, [bias, gain, noise]);
+        Ok(scale.nearest(felt))
     }
 }
 
-fn draw(random: &mut Random, parameter: NormalParameter) -> f64 {
+/// What an observer with this bias and gain would answer on an endless scale, with this noise.
+pub(crate) fn perceived(scale: Scale, quality: f64, [bias, gain, noise]: [f64; 3]) -> f64 {
+    let centre = f64::midpoint(f64::from(scale.lowest), f64::from(scale.highest));
+    centre + gain * (quality - centre) + bias + noise
+}
+
+pub(crate) fn draw(random: &mut Random, parameter: NormalParameter) -> f64 {
     parameter.mean + parameter.sd * random.normal()
 }

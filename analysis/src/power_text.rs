@@ -1,0 +1,131 @@
+//! The power of a study as text, as CSV and as JSON.
+
+use std::fmt::Write as _;
+
+use crate::anova_table::{quoted, shortest};
+use crate::apa::fraction;
+use crate::power::{EffectPower, Power, PowerPoint};
+use crate::text_table::TextTable;
+
+impl Power {
+    /// As text for a terminal: a line for each number of subjects, then how many subjects each effect needs.
+    pub fn to_text(&self) -> String {
+        let settings = &self.settings;
+        let mut text = format!(
+            "Power at {}, by {} simulated studies a line (95% interval at most ± {})\n",
+            settings.alpha,
+            settings.n_studies,
+            fraction(self.widest_half(), 3)
+        );
+        text.push_str(&self.table(|point| &point.effects, |one| fraction(one.power, 3)));
+        if self.points.iter().any(|point| !point.asymptotes.is_empty()) {
+            text.push_str("\nWhere the curves flatten: mean width of the interval (and of the estimates, mean and SD)\n");
+            text.push_str(&self.asymptote_table());
+        }
+        // Writing to a `String` cannot fail, here and below.
+        _ = writeln!(
+            text,
+            "\nSubjects from which on the power is at least {} (simple effects after Holm)",
+            settings.target
+        );
+        let mut table = TextTable::new(&["effect", "subjects"]);
+        for (effect, needed) in self.subjects_needed() {
+            let most = settings.subjects.last().copied().unwrap_or_default();
+            let needed = needed.map_or_else(|| format!("more than {most}"), |n| n.to_string());
+            table.row(&[effect, needed]);
+        }
+        text + &table.to_text()
+    }
+
+    /// The largest half width of an interval.
+    fn widest_half(&self) -> f64 {
+        let effects = self.points.iter().flat_map(|point| &point.effects);
+        effects.fold(0.0, |widest, one| widest.max((one.high - one.low) / 2.0))
+    }
+
+    fn table(
+        &self,
+        of: fn(&PowerPoint) -> &Vec<EffectPower>,
+        field: fn(&EffectPower) -> String,
+    ) -> String {
+        let names = self.points.first().map(of).into_iter().flatten();
+        let header: Vec<&str> = std::iter::once("subjects")
+            .chain(names.map(|one| one.effect.as_str()))
+            .collect();
+        let mut table = TextTable::new(&header);
+        for point in &self.points {
+            let mut fields = vec![point.subjects.to_string()];
+            fields.extend(of(point).iter().map(field));
+            table.row(&fields);
+        }
+        table.to_text()
+    }
+
+    fn asymptote_table(&self) -> String {
+        let first = self.points.first();
+        let curves = first.map(|point| &point.asymptotes).into_iter().flatten();
+        let header: Vec<&str> = std::iter::once("subjects")
+            .chain(curves.map(|one| one.curve.as_str()))
+            .collect();
+        let mut table = TextTable::new(&header);
+        for point in &self.points {
+            let mut fields = vec![point.subjects.to_string()];
+            fields.extend((point.asymptotes.iter()).map(|one| {
+                let unit = &one.unit;
+                format!(
+                    "{:.1}{unit} ({:.1}{unit}, {:.1}{unit})",
+                    one.width, one.estimate, one.sd
+                )
+            }));
+            table.row(&fields);
+        }
+        table.to_text()
+    }
+
+    /// A line for each number of subjects and each effect or asymptote.
+    pub fn to_csv(&self) -> String {
+        let mut csv =
+            String::from("subjects,kind,name,studies,power,low,high,estimate,sd,width,unit\n");
+        let studies = self.settings.n_studies;
+        for point in &self.points {
+            let subjects = point.subjects;
+            let kinds = [
+                ("effect", &point.effects),
+                ("simple effect", &point.simple_effects),
+            ];
+            for (kind, one) in kinds
+                .into_iter()
+                .flat_map(|(kind, list)| list.iter().map(move |one| (kind, one)))
+            {
+                _ = writeln!(
+                    csv,
+                    "{subjects},{kind},{},{studies},{},{},{},,,,",
+                    quoted(&one.effect),
+                    shortest(one.power),
+                    shortest(one.low),
+                    shortest(one.high)
+                );
+            }
+            for one in &point.asymptotes {
+                _ = writeln!(
+                    csv,
+                    "{subjects},asymptote,{},{studies},,,,{},{},{},{}",
+                    quoted(&one.curve),
+                    shortest(one.estimate),
+                    shortest(one.sd),
+                    shortest(one.width),
+                    quoted(&one.unit)
+                );
+            }
+        }
+        csv
+    }
+
+    /// All of it as JSON, with a line end.
+    pub fn to_json(&self) -> String {
+        // A struct of numbers and text cannot fail to be written.
+        let mut json = serde_json::to_string_pretty(self).unwrap_or_default();
+        json.push('\n');
+        json
+    }
+}
