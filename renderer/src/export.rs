@@ -7,6 +7,7 @@
 //!   of each band, relative as Y is; and R, G, B, linear sRGB, for viewers. It has the rays of A.
 //! - **png16**: sRGB, 16 bits, white D65.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
@@ -17,7 +18,7 @@ use protocols::{
 
 use crate::channel_image::ChannelImage;
 use crate::error::RendererError;
-use crate::float_exr::FloatExr;
+use crate::float_exr::{self, FloatExr};
 use crate::image_record::ImageRecord;
 use crate::image_request::ImageRequest;
 use crate::opponent::{linear_srgb_from_ac1c2, xyz_from_ac1c2};
@@ -26,6 +27,12 @@ use crate::screen_tree::ScreenTree;
 use crate::shader::single;
 use crate::spectral_image::spectral_images;
 use crate::srgb::srgb_encode_16;
+
+const XYZ_COMMENTS: &str =
+    "X, Y, Z: CIE 1931, 2 degrees, linear; Y = 1 for a perfect diffuser under an illuminance of 1";
+
+const SPECTRAL_COMMENTS: &str = "S0: radiance at the middle of each band, relative: summed with the CIE 1931 functions and divided by \
+    the sum of y-bar, 1 for a perfect diffuser under an illuminance of 1. R, G, B: linear sRGB";
 
 /// What an image was made from and what it is.
 #[derive(Debug)]
@@ -82,20 +89,20 @@ impl<S: Sampler> Exporter<'_, S> {
         })
     }
 
-    fn named(names: [&str; 3], planes: [Vec<f32>; 3]) -> Vec<(String, Vec<f32>)> {
+    fn named(names: [&str; 3], planes: [Vec<f32>; 3]) -> Vec<(String, Cow<'static, [f32]>)> {
+        let planes = planes.map(Cow::Owned);
         names.map(str::to_owned).into_iter().zip(planes).collect()
     }
 
-    fn xyz(&self) -> FloatExr {
+    fn xyz(&self) -> FloatExr<'static> {
         FloatExr {
             size_px: self.channels.a.size_px(),
             channels: Self::named(["X", "Y", "Z"], self.planes(xyz_from_ac1c2)),
-            texts: self.record.texts(),
-            comments: "X, Y, Z: CIE 1931, 2 degrees, linear; Y = 1 for a perfect diffuser under an illuminance of 1",
+            attributes: float_exr::attributes(XYZ_COMMENTS, self.record.texts()),
         }
     }
 
-    fn spectral(&self, path: &Path) -> Result<FloatExr, RendererError> {
+    fn spectral(&self, path: &Path) -> Result<FloatExr<'static>, RendererError> {
         let nodes_nm = self.sampler.wavelengths_nm();
         if nodes_nm.is_empty() {
             let found = "a picture without a spectrum";
@@ -105,8 +112,8 @@ impl<S: Sampler> Exporter<'_, S> {
         let size_px = self.channels.a.size_px();
         let images = spectral_images(self.sampler, self.tree, reach, size_px);
         let bands = nodes_nm.iter().zip(images);
-        let bands = bands.map(|(&nm, image)| (band_name(nm), image.into_values()));
-        let mut channels: Vec<(String, Vec<f32>)> = bands.collect();
+        let bands = bands.map(|(&nm, image)| (band_name(nm), Cow::Owned(image.into_values())));
+        let mut channels: Vec<_> = bands.collect();
         channels.extend(Self::named(
             ["R", "G", "B"],
             self.planes(linear_srgb_from_ac1c2),
@@ -117,9 +124,7 @@ impl<S: Sampler> Exporter<'_, S> {
         Ok(FloatExr {
             size_px,
             channels,
-            texts,
-            comments: "S0: radiance at the middle of each band, relative: summed with the CIE 1931 functions and divided by \
-                       the sum of y-bar, 1 for a perfect diffuser under an illuminance of 1. R, G, B: linear sRGB",
+            attributes: float_exr::attributes(SPECTRAL_COMMENTS, texts),
         })
     }
 

@@ -13,15 +13,11 @@ pub(crate) const AREA_PX: f64 = 2.25;
 /// The integral of the filter from −∞ to `t` pixels from the pixel's centre.
 ///
 /// ```text
-/// F(t) = (1 + t)² / 2 for -1 < t <= 0,  1 - (1 - t)² / 2 for 0 < t < 1;  0 before, 1 after
+/// F(t) = 1/2 + t - t |t| / 2 for -1 < t < 1;  0 before, 1 after
 /// ```
 pub(crate) fn integral_up_to(t: f64) -> f64 {
     let t = t.clamp(-RADIUS_PX, RADIUS_PX);
-    if t <= 0.0 {
-        0.5 * (1.0 + t) * (1.0 + t)
-    } else {
-        1.0 - 0.5 * (1.0 - t) * (1.0 - t)
-    }
+    0.5 + t * (1.0 - 0.5 * t.abs())
 }
 
 #[cfg(test)]

@@ -1,23 +1,26 @@
 //! EXR files whose channels are A, C1 and C2.
 //!
-//! 32-bit float, scan lines, not compressed: the noise of samples leaves ZIP a tenth to gain, for half of the
-//! time that a whole set takes. Beside the pixels stand the ray counts, the matrix of Eq. 2 and all that
-//! is needed to make the image again. The same image has the same bytes: no date, no machine, and the
-//! attributes in the order of their names (the `exr` crate keeps them in a hash map).
+//! Not compressed: the noise of samples leaves ZIP a tenth to gain, for half of the time that a whole set takes.
+//! Beside the pixels stand the ray counts, the matrix of Eq. 2 and all that is needed to make the image again.
 
+use std::borrow::Cow;
 use std::io::Cursor;
 use std::path::Path;
 
 use exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, Layer, LayerAttributes,
-    ReadChannels as _, ReadLayers as _, Text, WritableImage as _,
+    AnyChannel, AttributeValue, FlatSamples, LayerAttributes, ReadChannels as _, ReadLayers as _,
+    Text,
 };
 use protocols::{Channel, InputError, PerChannel};
 
 use crate::channel_image::ChannelImage;
 use crate::error::RendererError;
+use crate::float_exr::{self, FloatExr};
 use crate::image_record::ImageRecord;
 use crate::opponent::AC1C2_FROM_XYZ;
+
+const COMMENTS: &str =
+    "A, C1, C2: opponent channels of Meyer & Liu (1992), Eq. 2, CIE 1931 2 degrees, linear";
 
 /// The bytes of the file; `path` is only named in errors.
 ///
@@ -29,87 +32,30 @@ pub(crate) fn encode(
     record: &ImageRecord,
     path: &Path,
 ) -> Result<Vec<u8>, RendererError> {
-    let size_px = channels.a.size_px().map(|size| size as usize);
-    let samples = |channel: Channel| {
-        let name = channel.to_string();
-        AnyChannel::new(
-            name.as_str(),
-            FlatSamples::F32(channels[channel].values().to_vec()),
-        )
+    let values = |channel: Channel| {
+        let values = Cow::Borrowed(channels[channel].values());
+        (channel.to_string(), values)
     };
-    let layer = Layer::new(
-        (size_px[0], size_px[1]),
-        attributes(record),
-        Encoding::UNCOMPRESSED,
-        AnyChannels::sort(Channel::ALL.into_iter().map(samples).collect()),
-    );
-    let mut bytes = Cursor::new(Vec::new());
-    let image = Image::from_layer(layer);
-    let refused = |reason: String| RendererError::Encoding {
-        path: path.to_owned(),
-        reason,
+    let file = FloatExr {
+        size_px: channels.a.size_px(),
+        channels: Channel::ALL.map(values).into(),
+        attributes: attributes(record),
     };
-    let written = image.write().non_parallel().to_buffered(&mut bytes);
-    written.map_err(|error| refused(error.to_string()))?;
-    let mut bytes = bytes.into_inner();
-    sort_attributes(&mut bytes).ok_or_else(|| refused("a header without an end".to_owned()))?;
-    Ok(bytes)
+    file.encode(path)
 }
 
 fn attributes(record: &ImageRecord) -> LayerAttributes {
-    let mut attributes = LayerAttributes {
-        software_name: Some(Text::from("Acuity")),
-        comments: Some(Text::from(
-            "A, C1, C2: opponent channels of Meyer & Liu (1992), Eq. 2, CIE 1931 2 degrees, linear",
-        )),
-        ..LayerAttributes::default()
-    };
+    let counts = [("raysA", record.rays_a), ("raysC1C2", record.rays_c1c2)];
+    let counts = counts.map(|(name, rays)| (name, rays.get().to_string()));
+    let mut attributes = float_exr::attributes(COMMENTS, counts.into_iter().chain(record.texts()));
     let matrix = AC1C2_FROM_XYZ.as_flattened();
     #[expect(
         clippy::cast_possible_truncation,
         reason = "the attribute is of 32-bit floats; Eq. 2 has four decimals"
     )]
-    let matrix = std::array::from_fn(|place| matrix[place] as f32);
-    let counts = [("raysA", record.rays_a), ("raysC1C2", record.rays_c1c2)];
-    let texts = record
-        .texts()
-        .into_iter()
-        .map(|(name, text)| (name, AttributeValue::Text(Text::from(text.as_str()))));
-    let all = counts
-        .into_iter()
-        .map(|(name, rays)| {
-            (
-                name,
-                AttributeValue::Text(Text::from(rays.get().to_string().as_str())),
-            )
-        })
-        .chain([("ac1c2FromXyz", AttributeValue::Matrix3x3(matrix))])
-        .chain(texts);
+    let matrix = AttributeValue::Matrix3x3(std::array::from_fn(|place| matrix[place] as f32));
+    attributes.other.insert(Text::from("ac1c2FromXyz"), matrix);
     attributes
-        .other
-        .extend(all.map(|(name, value)| (Text::from(name), value)));
-    attributes
-}
-
-/// Puts the attributes of the one header in the order of their names; their bytes stay the same.
-///
-/// The header begins after the magic number and the version, 8 bytes. An attribute is a name and a type,
-/// each ended by a zero, the length of its value in 4 bytes, and the value; an empty name ends the header.
-pub(crate) fn sort_attributes(file: &mut [u8]) -> Option<()> {
-    let mut attributes = Vec::new();
-    let mut end = 8;
-    while *file.get(end)? != 0 {
-        let start = end;
-        for _name_then_type in 0..2 {
-            end += file.get(end..)?.iter().position(|&byte| byte == 0)? + 1;
-        }
-        let length = file.get(end..)?.first_chunk::<4>()?;
-        end += 4 + usize::try_from(u32::from_le_bytes(*length)).ok()?;
-        attributes.push(file.get(start..end)?.to_vec());
-    }
-    attributes.sort_unstable();
-    file[8..end].copy_from_slice(&attributes.concat());
-    Some(())
 }
 
 /// The channels in the bytes of a file; `path` is only named in errors.

@@ -4,7 +4,6 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use protocols::{Access, Channel, InputError, PerChannel, Sha256Digest, write_atomically};
-use rayon::prelude::*;
 
 use crate::account::RayAccount;
 use crate::channel_image::ChannelImage;
@@ -15,11 +14,11 @@ use crate::export::Exporter;
 use crate::image_record::ImageRecord;
 use crate::image_request::ImageRequest;
 use crate::opponent_exr;
-use crate::reconstruct::Reconstruction;
 use crate::remark;
 use crate::sampler::Sampler;
 use crate::samples_map::{self, SamplesMap};
-use crate::screen_tree::ScreenTree;
+use crate::screen_tree::{Reach, ScreenTree};
+use crate::snapshots::{Wanted, snapshots};
 use crate::srgb_png::{SrgbEncoder, SrgbImage};
 use crate::watch::Watch;
 
@@ -112,22 +111,15 @@ pub fn render_image_of(
     let plan = request.trace_plan();
     let checkpoint = Checkpoint::beside(out, &plan, request.quadrature, &scene_sha256);
     let tree = checkpoint.trace(sampler, &plan, watch)?;
-    let images: Vec<(ChannelImage, u64)> = Channel::ALL
-        .into_par_iter()
-        .filter_map(|channel| channel_image(&tree, channel, request))
-        .collect();
-    let [(a, a_count), (c1, c1_count), (c2, c2_count)] = images.as_slice() else {
-        return Err(RendererError::Encoding {
+    let images = request
+        .images_in(&tree)
+        .ok_or_else(|| RendererError::Encoding {
             path: out.to_owned(),
             reason: "a channel stopped before its image was complete".to_owned(),
-        });
-    };
+        })?;
+    let PerChannel { a, c1, c2 } = &images;
     let channels = PerChannel { a, c1, c2 };
-    let rectangles = PerChannel {
-        a: *a_count,
-        c1: *c1_count,
-        c2: *c2_count,
-    };
+    let rectangles = request.rectangles_in(&tree);
     write_samples_maps(&tree, request)?;
     let account = tree.account();
     let confidence = confidence_reached(&tree, request);
@@ -147,15 +139,16 @@ pub fn render_image_of(
         Format::Exr => opponent_exr::encode(channels, &record, out)?,
         Format::Png => picture.to_png(out)?,
     };
-    write_atomically(out, &bytes, Access::Ordinary)
-        .map_err(|error| RendererError::writing(out, error))?;
+    let write = || write_atomically(out, &bytes, Access::Ordinary);
+    let (written, sha256) = rayon::join(write, || Sha256Digest::of(&bytes));
+    written.map_err(|error| RendererError::writing(out, error))?;
     checkpoint.remove()?;
     Ok(ImageSummary {
         path: out.to_owned(),
         exports: (exports.iter())
             .map(|(_, file)| out.with_file_name(&file.name))
             .collect(),
-        sha256: Sha256Digest::of(&bytes),
+        sha256,
         account,
         rectangles,
         confidence,
@@ -176,21 +169,6 @@ fn confidence_reached(tree: &ScreenTree, request: &ImageRequest) -> Option<Confi
     })
 }
 
-/// The image of a channel and the number of its leaves; `None` if the channel stopped earlier.
-fn channel_image(
-    tree: &ScreenTree,
-    channel: Channel,
-    request: &ImageRequest,
-) -> Option<(ChannelImage, u64)> {
-    let mut reconstruction = Reconstruction::new(request.size_px);
-    let mut leaves = 0;
-    tree.visit_leaves(channel, request.reach(channel), |leaf| {
-        reconstruction.add(leaf);
-        leaves += 1;
-    })?;
-    Some((reconstruction.into_image(), leaves))
-}
-
 fn write_samples_maps(tree: &ScreenTree, request: &ImageRequest) -> Result<(), RendererError> {
     if request.samples_maps.is_empty() {
         return Ok(());
@@ -202,6 +180,22 @@ fn write_samples_maps(tree: &ScreenTree, request: &ImageRequest) -> Result<(), R
 }
 
 impl ImageRequest {
+    /// The image of each channel; `None` if a channel stopped earlier.
+    fn images_in(&self, tree: &ScreenTree) -> Option<PerChannel<ChannelImage>> {
+        let wanted = PerChannel::from_fn(|channel| {
+            let Reach { rays, depth } = self.reach(channel);
+            let rays = [rays].into();
+            Wanted { rays, depth }
+        });
+        let mut images = snapshots(tree, &wanted, self.size_px)?;
+        let mut only = |channel: Channel| images[channel].pop_first().map(|(_, image)| image);
+        Some(PerChannel {
+            a: only(Channel::A)?,
+            c1: only(Channel::C1)?,
+            c2: only(Channel::C2)?,
+        })
+    }
+
     /// What the file of the image says, with the samples from which each channel was made.
     pub(crate) fn record(
         &self,

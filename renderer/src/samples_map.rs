@@ -18,7 +18,7 @@ use protocols::{Access, Channel, InputError, PerChannel, write_atomically};
 use crate::channel_image::ChannelImage;
 use crate::error::RendererError;
 use crate::figures::samples_sheet;
-use crate::opponent_exr::sort_attributes;
+use crate::float_exr::sort_attributes;
 use crate::render_image::Format;
 use crate::sampler::ScreenPoint;
 use crate::screen_tree::{Reach, ScreenTree};

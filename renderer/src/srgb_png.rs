@@ -1,7 +1,7 @@
 //! Opponent channels as an 8-bit sRGB picture, and PNG files.
 //!
 //! The transfer curve is only evaluated for the 255 steps between codes: a primary is then looked up among
-//! them, which gives the codes of [`srgb_encode`] at a tenth of its cost.
+//! them, which gives the codes of [`srgb_encode`] at a small part of its cost.
 
 use std::path::Path;
 
@@ -25,11 +25,17 @@ pub struct SrgbImage {
     pub out_of_gamut_px: u32,
 }
 
+/// Into so many parts the linear range is divided to look a code up: a power of 2, so that a place is found
+/// without rounding, and so many that none holds two steps, since the curve is nowhere steeper than 12.92.
+const PARTS: usize = 4096;
+
 /// Turns opponent channels into sRGB codes.
 #[derive(Clone, Debug)]
 pub struct SrgbEncoder {
-    /// The least linear primary of each code from 1 to 255.
-    steps: [f64; 255],
+    /// The least linear primary of the next code, for each code.
+    steps: [f64; 256],
+    /// The code at the beginning of each of [`PARTS`] equal parts of the linear range, and at its end.
+    codes: [u8; PARTS + 1],
     /// The least and the greatest linear primary that is not clipped.
     gamut: [f64; 2],
 }
@@ -38,10 +44,19 @@ impl SrgbEncoder {
     /// Finds the steps of the transfer curve.
     pub fn new() -> Self {
         let is_shown = |linear: f64| !is_out_of_srgb_gamut([linear, 0.5, 0.5]);
+        let step = |code| match code {
+            255 => f64::INFINITY,
+            _ => least(0.0, 1.0, |linear| usize::from(srgb_encode(linear)) > code),
+        };
+        let steps = std::array::from_fn(step);
+        let code = |part| {
+            let linear = part as f64 / PARTS as f64;
+            let steps_below = steps.partition_point(|&step| step <= linear);
+            u8::try_from(steps_below).unwrap_or(u8::MAX)
+        };
         Self {
-            steps: std::array::from_fn(|place| {
-                least(0.0, 1.0, |linear| usize::from(srgb_encode(linear)) > place)
-            }),
+            steps,
+            codes: std::array::from_fn(code),
             gamut: [
                 least(-1.0, 0.5, is_shown),
                 -least(-2.0, -0.5, |negated| is_shown(-negated)),
@@ -52,20 +67,21 @@ impl SrgbEncoder {
     /// The picture of three channels of the same size.
     pub fn encode(&self, channels: PerChannel<&ChannelImage>) -> SrgbImage {
         let PerChannel { a, c1, c2 } = channels;
-        let mut bytes = Vec::with_capacity(3 * a.values().len());
+        let mut bytes = vec![0; 3 * a.values().len()];
         let mut out_of_gamut_px = 0;
-        for ((&a, &c1), &c2) in a.values().iter().zip(c1.values()).zip(c2.values()) {
+        let [least, greatest] = self.gamut;
+        let values = a.values().iter().zip(c1.values()).zip(c2.values());
+        for (((&a, &c1), &c2), codes) in values.zip(bytes.as_chunks_mut::<3>().0) {
             let linear = linear_srgb_from_ac1c2(PerChannel {
                 a: f64::from(a),
                 c1: f64::from(c1),
                 c2: f64::from(c2),
             });
-            let [least, greatest] = self.gamut;
             let is_shown = linear
                 .iter()
                 .all(|primary| (least..=greatest).contains(primary));
             out_of_gamut_px += u32::from(!is_shown);
-            bytes.extend(linear.map(|primary| self.code(primary)));
+            *codes = linear.map(|primary| self.code(primary));
         }
         SrgbImage {
             size_px: channels.a.size_px(),
@@ -75,8 +91,14 @@ impl SrgbEncoder {
     }
 
     fn code(&self, linear: f64) -> u8 {
-        let steps_below = self.steps.partition_point(|&step| step <= linear);
-        u8::try_from(steps_below).unwrap_or(u8::MAX)
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "rounded down on purpose, from 0 to PARTS after the clamp; not-a-number becomes 0"
+        )]
+        let part = (linear.clamp(0.0, 1.0) * PARTS as f64) as usize;
+        let code = self.codes[part];
+        code + u8::from(self.steps[usize::from(code)] <= linear)
     }
 }
 

@@ -9,6 +9,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::SyncSender;
 
 use protocols::{
     Access, Channel, Manifest, ManifestFile, ManifestStimulus, PerChannel, RayCount, Rendering,
@@ -22,15 +23,16 @@ use crate::channel_image::ChannelImage;
 use crate::checkpoint::Checkpoint;
 use crate::error::RendererError;
 use crate::export::Exporter;
+use crate::file_writers::{Files, while_writing, writers_for};
 use crate::image_record::ImageRecord;
 use crate::image_request::ImageRequest;
 use crate::opponent_exr;
-use crate::reconstruct::reconstruct;
 use crate::refine::TracePlan;
 use crate::remark;
 use crate::sampler::Sampler;
 use crate::screen_tree::{Reach, ScreenTree};
 use crate::set_summary::{SetSummary, StimulusSummary};
+use crate::snapshots::{Wanted, snapshots};
 use crate::srgb_png::SrgbEncoder;
 use crate::watch::{Stage, Watch};
 
@@ -38,8 +40,8 @@ const COLOR_SPACE: &str = "EXR: opponent channels A, C1, C2 of Meyer & Liu (1992
     tristimulus values, linear, display white D65 at (1.0001, -0.0293, 0.5537). PNG: sRGB (IEC 61966-2-1), 8 bits, \
     white D65.";
 
-/// The images of one channel, by their ray counts.
-type ImagesByRays = BTreeMap<RayCount, ChannelImage>;
+/// The images of each channel, by their ray counts.
+type ImagesByRays = PerChannel<BTreeMap<usize, ChannelImage>>;
 
 /// Renders the stimulus set of a study into the folder `out`, from anything that can be sampled.
 ///
@@ -68,17 +70,16 @@ pub fn render_set_of(
     );
     let tree = checkpoint.trace(sampler, &trace_plan, watch)?;
     remove_manifest(out)?;
-    let images = channel_images(&tree, rendering);
+    let images = channel_images(&tree, rendering).unwrap_or_default();
     let encoder = SrgbEncoder::new();
-    let images_done = AtomicU64::new(0);
-    let write = |stimulus: &Stimulus| {
+    let encode = |stimulus: &Stimulus, files: &SyncSender<Files>| {
         if watch.is_cancelled() {
             return Err(checkpoint.interruption(&tree, &trace_plan));
         }
         let request = ImageRequest::of_study(rendering, stimulus.rays_a, stimulus.rays_c1c2);
         let channels = recombine(&images, &request, out)?;
         let record = request.record(scene_sha256.clone(), request.rectangles_in(&tree));
-        let mut written = write_stimulus(stimulus, channels, &record, &encoder, out)?;
+        let (mut entry, images) = encode_stimulus(stimulus, channels, &record, &encoder, out)?;
         let exporter = Exporter {
             sampler,
             tree: &tree,
@@ -86,35 +87,47 @@ pub fn render_set_of(
             record: &record,
             channels,
         };
-        written.exports = exporter
-            .write(&out.join(&written.exr.name))?
-            .into_iter()
-            .collect();
+        let exports = exporter.write(&out.join(&entry.exr.name))?;
+        entry.exports = exports.into_iter().collect();
+        // Writers go only when nothing more is handed over.
+        let _sent = files.send(images);
+        Ok(entry)
+    };
+    let images_done = AtomicU64::new(0);
+    let written = || {
         let done = images_done.fetch_add(1, Ordering::Relaxed) + 1;
         watch.tell(Stage::Images, done, stimuli.len() as u64);
-        Ok(written)
     };
-    let written: Result<Vec<ManifestStimulus>, RendererError> =
-        stimuli.par_iter().map(write).collect();
+    let entries = while_writing(writers_for(plan.size_px), out, &written, |files| {
+        let stimuli = stimuli.par_iter().with_max_len(1);
+        stimuli.map(|stimulus| encode(stimulus, files)).collect()
+    });
     checkpoint.keep_if_cancelled(&tree, &trace_plan, watch)?;
-    let manifest = manifest(study, plan, (scene_sha256.clone(), written?));
+    let manifest = manifest(study, plan, (scene_sha256.clone(), entries?));
     write_manifest(&manifest, out)?;
     checkpoint.remove()?;
-    Ok(SetSummary {
+    Ok(summary(study, rendering, manifest, (&tree, out)))
+}
+
+fn summary(
+    study: &Study,
+    rendering: Rendering<'_>,
+    manifest: Manifest,
+    (tree, out): (&ScreenTree, &Path),
+) -> SetSummary {
+    let stimuli = manifest.stimuli.iter();
+    SetSummary {
         folder: out.to_owned(),
         account: tree.account(),
-        stimuli: manifest
-            .stimuli
-            .iter()
-            .map(|stimulus| StimulusSummary::new(stimulus, rendering, &tree))
+        stimuli: stimuli
+            .map(|stimulus| StimulusSummary::new(stimulus, rendering, tree))
             .collect(),
-        acuity: study
-            .protocol
-            .acuity
-            .map(|acuity| AcuityLimits::new(acuity, study.protocol.viewing, plan.size_px)),
+        acuity: study.protocol.acuity.map(|acuity| {
+            AcuityLimits::new(acuity, study.protocol.viewing, rendering.plan.size_px)
+        }),
         remarks: manifest.remarks,
         warnings: Vec::new(),
-    })
+    }
 }
 
 /// Every channel as far as any image needs it.
@@ -129,48 +142,29 @@ fn trace_plan(rendering: Rendering<'_>) -> TracePlan {
     ImageRequest::of_study(rendering, rays_a, rays_c1c2).trace_plan()
 }
 
-fn channel_images(tree: &ScreenTree, rendering: Rendering<'_>) -> PerChannel<ImagesByRays> {
-    let plan = rendering.plan;
-    let mut wanted: Vec<(Channel, RayCount, u32)> = Vec::new();
-    for stimulus in plan.stimuli() {
+/// Every channel image that a stimulus needs.
+fn channel_images(tree: &ScreenTree, rendering: Rendering<'_>) -> Option<ImagesByRays> {
+    let mut wanted = PerChannel::<Wanted>::default();
+    for stimulus in rendering.plan.stimuli() {
         let request = ImageRequest::of_study(rendering, stimulus.rays_a, stimulus.rays_c1c2);
-        wanted.extend(
-            Channel::ALL
-                .map(|channel| (channel, request.rays(channel), request.reach(channel).depth)),
-        );
+        for channel in Channel::ALL {
+            let Reach { rays, depth } = request.reach(channel);
+            wanted[channel].rays.insert(rays);
+            wanted[channel].depth = depth;
+        }
     }
-    // The longest work first, so that no thread is left with it at the end.
-    wanted.sort_unstable_by(|one, other| other.1.cmp(&one.1).then(one.0.cmp(&other.0)));
-    wanted.dedup();
-    let image = |&(channel, rays, depth): &(Channel, RayCount, u32)| {
-        let reach = Reach {
-            rays: rays.as_usize(),
-            depth,
-        };
-        let leaves = tree.leaves(channel, reach)?;
-        Some((channel, rays, reconstruct(&leaves, plan.size_px)))
-    };
-    let images: Vec<_> = wanted
-        .par_iter()
-        .with_max_len(1)
-        .filter_map(image)
-        .collect();
-    let mut by_rays = PerChannel::<ImagesByRays>::default();
-    for (channel, rays, image) in images {
-        by_rays[channel].insert(rays, image);
-    }
-    by_rays
+    snapshots(tree, &wanted, rendering.plan.size_px)
 }
 
 fn recombine<'a>(
-    images: &'a PerChannel<ImagesByRays>,
+    images: &'a ImagesByRays,
     request: &ImageRequest,
     out: &Path,
 ) -> Result<PerChannel<&'a ChannelImage>, RendererError> {
     let find = |channel: Channel| {
         let rays = request.rays(channel);
         images[channel]
-            .get(&rays)
+            .get(&rays.as_usize())
             .ok_or_else(|| RendererError::Encoding {
                 path: out.to_owned(),
                 reason: format!("the trace holds no image of {channel} at {rays} rays"),
@@ -183,29 +177,29 @@ fn recombine<'a>(
     })
 }
 
-fn write_stimulus(
+/// The entry of a stimulus in the manifest, and its files.
+fn encode_stimulus(
     stimulus: &Stimulus,
     channels: PerChannel<&ChannelImage>,
     record: &ImageRecord,
     encoder: &SrgbEncoder,
     out: &Path,
-) -> Result<ManifestStimulus, RendererError> {
-    let write = |ending: &str, bytes: &[u8]| {
-        let name = format!("{}.{ending}", stimulus.id);
-        let path = out.join(&name);
-        write_atomically(&path, bytes, Access::Ordinary)
-            .map_err(|error| RendererError::writing(&path, error))?;
-        Ok::<_, RendererError>(ManifestFile {
-            name,
-            sha256: Sha256Digest::of(bytes),
-        })
-    };
+) -> Result<(ManifestStimulus, Files), RendererError> {
     let path = out.join(stimulus.id.as_str());
-    let exr = write("exr", &opponent_exr::encode(channels, record, &path)?)?;
     let picture = encoder.encode(channels);
-    let png = write("png", &picture.to_png(&path)?)?;
+    let files = [
+        ("exr", opponent_exr::encode(channels, record, &path)?),
+        ("png", picture.to_png(&path)?),
+    ];
+    let [exr, png] = files.each_ref().map(|(ending, bytes)| ManifestFile {
+        name: format!("{}.{ending}", stimulus.id),
+        sha256: Sha256Digest::of(bytes),
+    });
+    let files = [&exr, &png].into_iter().zip(files);
+    let files = files.map(|(file, (_, bytes))| (out.join(&file.name), bytes));
+    let files = files.collect();
     let factors = stimulus.factors();
-    Ok(ManifestStimulus {
+    let entry = ManifestStimulus {
         id: stimulus.id.clone(),
         varied: factors.get("channel").cloned().unwrap_or_default(),
         rays_a: stimulus.rays_a,
@@ -215,7 +209,8 @@ fn write_stimulus(
         png,
         out_of_gamut_px: picture.out_of_gamut_px,
         exports: BTreeMap::new(),
-    })
+    };
+    Ok((entry, files))
 }
 
 fn manifest(

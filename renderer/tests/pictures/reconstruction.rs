@@ -1,8 +1,8 @@
 //! From leaves to pixels, judged by closed forms and by brute force.
 
 use crate::analytic::{Analytic, disc_and_checks, plan};
-use protocols::Channel;
-use renderer::{Cell, ChannelImage, Leaf, Reach, reconstruct, trace};
+use protocols::{Channel, PerChannel};
+use renderer::{Cell, ChannelImage, Leaf, Reach, Wanted, reconstruct, snapshots, trace};
 
 fn picture(
     sampler: &impl renderer::Sampler,
@@ -147,4 +147,73 @@ fn more_rays_make_a_better_picture() {
         errors[1] < 0.6 * errors[0] && errors[2] < 0.6 * errors[1],
         "{errors:?}"
     );
+}
+
+fn wanted(rays: &[usize], depth: u32) -> PerChannel<Wanted> {
+    PerChannel::from_fn(|_| Wanted {
+        rays: rays.iter().copied().collect(),
+        depth,
+    })
+}
+
+/// Within the last place of single precision.
+fn is_same_but_for_rounding(image: &ChannelImage, plain: &ChannelImage) -> bool {
+    image.values().iter().zip(plain.values()).all(|pair| {
+        let [one, other] = [pair.0, pair.1].map(|&value| f64::from(value));
+        (one - other).abs() <= f64::from(f32::EPSILON) * other.abs() + 1e-13
+    })
+}
+
+/// The plain way sums over all leaves of one channel at one count. Both sums are in double precision, a few
+/// hundred terms of at most 1, and so differ by less than 1e-13; then each is rounded to single precision.
+#[test]
+fn images_made_in_one_walk_are_the_sums_over_the_leaves() {
+    let tree = trace(&disc_and_checks(), &plan(5000), &|_, _| ());
+    let counts = [1, 2, 3, 64, 500, 777, 3000, 4999, 5000, 6000];
+    for size_px in [[64, 64], [97, 41], [5, 130], [1, 1]] {
+        for depth in [Cell::DEEPEST, 9, 0] {
+            let images = snapshots(&tree, &wanted(&counts, depth), size_px).unwrap();
+            for channel in Channel::ALL {
+                assert!(images[channel].keys().eq(&counts));
+                for (&rays, image) in &images[channel] {
+                    let leaves = tree.leaves(channel, Reach { rays, depth }).unwrap();
+                    let plain = reconstruct(&leaves, size_px);
+                    let place = (channel, rays, depth, size_px);
+                    assert!(is_same_but_for_rounding(image, &plain), "{place:?}");
+                }
+            }
+        }
+    }
+}
+
+/// An image does not depend on what else is wanted, bit for bit.
+#[test]
+fn an_image_made_alone_is_the_one_made_on_the_way_to_others() {
+    let size_px = [70, 90];
+    let tree = trace(&disc_and_checks(), &plan(5000), &|_, _| ());
+    let counts = [10, 700, 1500, 1501, 5000];
+    let many = snapshots(&tree, &wanted(&counts, Cell::DEEPEST), size_px).unwrap();
+    for channel in Channel::ALL {
+        for rays in counts {
+            let mut only = PerChannel::<Wanted>::default();
+            only[channel] = wanted(&[rays], Cell::DEEPEST)[channel].clone();
+            let alone = snapshots(&tree, &only, size_px).unwrap();
+            assert_eq!(alone[channel][&rays], many[channel][&rays]);
+        }
+    }
+}
+
+#[test]
+fn an_image_beyond_the_stop_of_its_channel_is_none() {
+    let mut plan = plan(3000);
+    plan.stops.c2 = Reach::rays(1000);
+    let tree = trace(&disc_and_checks(), &plan, &|_, _| ());
+    let c2_at = |rays: usize| {
+        let mut wanted = wanted(&[3000], Cell::DEEPEST);
+        wanted.c1.rays = [rays].into();
+        wanted.c2.rays = [rays].into();
+        snapshots(&tree, &wanted, [30, 30])
+    };
+    assert!(c2_at(1000).is_some());
+    assert!(c2_at(1001).is_none());
 }
