@@ -2,12 +2,13 @@
 
 use protocols::{Observer, Stimuli, Study};
 
-use crate::page::{Table, escaped};
+use crate::document::{Block, Section, Style, Table};
+use crate::page::escaped;
 use crate::sections::Sections;
 use crate::study_ratings::SessionRecord;
 
 impl Sections<'_> {
-    pub(crate) fn quality(&self) -> String {
+    pub(crate) fn quality(&self) -> Section {
         let mut facts = vec![match self.analysis.incomplete.as_slice() {
             [] => format!("All {} rated every image.", self.who()),
             some => {
@@ -39,10 +40,6 @@ impl Sections<'_> {
                 .iter()
                 .map(|warning| escaped(warning) + "."),
         );
-        let facts: Vec<String> = facts
-            .iter()
-            .map(|fact| format!("<li>{fact}</li>\n"))
-            .collect();
         let columns = [
             "Subject",
             "session",
@@ -56,11 +53,9 @@ impl Sections<'_> {
         for session in &self.ratings.sessions {
             table.row(&session_cells(session, self.ratings.observer));
         }
-        format!(
-            "<section>\n<h2>Quality of the data</h2>\n<ul>\n{}</ul>\n{}</section>\n",
-            facts.concat(),
-            table.to_html()
-        )
+        Section::new("Quality of the data")
+            .list(Style::Plain, facts)
+            .table(table)
     }
 
     fn timing(&self) -> [String; 2] {
@@ -97,13 +92,13 @@ impl Sections<'_> {
         format!("; ratings taken with {}", escaped(&versions.join(" and ")))
     }
 
-    pub(crate) fn provenance(&self) -> String {
+    pub(crate) fn provenance(&self) -> Section {
         let protocol = self
             .study
             .path
             .file_name()
             .map_or_else(String::new, |name| escaped(&name.to_string_lossy()));
-        let entries = [
+        let entries = vec![
             (
                 "Protocol",
                 format!("{protocol}, SHA-256 <code>{}</code>", self.study.sha256),
@@ -123,19 +118,14 @@ impl Sections<'_> {
             (
                 "Files",
                 format!(
-                    "<code>anova.json</code>, <code>anova.csv</code>, <code>means.csv</code>, <code>{0}.svg</code>, \
-                     <code>{0}.png</code> beside this page",
+                    "<code>report.md</code>, <code>tables.tex</code>, <code>to-paste.txt</code>, <code>anova.json</code>, <code>anova.csv</code>, \
+                     <code>follow-ups.csv</code>, <code>asymptotes.csv</code>, <code>means.csv</code>, and <code>{0}</code> as \
+                     <code>.svg</code>, <code>.pdf</code> and <code>.png</code> (300 dpi) beside this page",
                     figure_name(self.study)
                 ),
             ),
         ];
-        let list: Vec<String> = (entries.iter())
-            .map(|(term, text)| format!("<dt>{term}</dt><dd>{text}</dd>\n"))
-            .collect();
-        format!(
-            "<section>\n<h2>Where this comes from</h2>\n<dl>\n{}</dl>\n</section>\n",
-            list.concat()
-        )
+        Section::new("Where this comes from").block(Block::Terms(entries))
     }
 }
 

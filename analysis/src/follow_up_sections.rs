@@ -4,27 +4,26 @@
 use crate::apa;
 use crate::asymptote::{Asymptote, Asymptotes, Estimate};
 use crate::comparison::Comparison;
+use crate::document::{Section, Style, Table};
 use crate::follow_up::{FollowUp, SimpleEffect};
-use crate::page::{Table, escaped};
+use crate::page::escaped;
 use crate::results_text::effect_name;
 use crate::sections::{Sections, fraction_cell, p_cell};
 
 impl Sections<'_> {
     /// Where each curve flattens, and how sure that is.
-    pub(crate) fn asymptotes(&self) -> String {
-        let Some(found) = &self.analysis.table.asymptotes else {
-            return String::new();
-        };
-        let paragraphs: Vec<String> = (found.curves.iter())
-            .map(|curve| format!("<p>{}</p>\n", self.asymptote_in_words(found, curve)))
+    pub(crate) fn asymptotes(&self) -> Option<Section> {
+        let found = self.analysis.table.asymptotes.as_ref()?;
+        let mut paragraphs: Vec<String> = (found.curves.iter())
+            .map(|curve| self.asymptote_in_words(found, curve))
             .collect();
-        let difference = found.difference.map_or_else(String::new, |difference| {
+        paragraphs.extend(found.difference.map(|difference| {
             let [first, second] = [0, 1].map(|place| escaped(&found.curves[place].level));
             format!(
-                "<p>The plateau of the {first} curve less that of the {second} one: {}.</p>\n",
+                "The plateau of the {first} curve less that of the {second} one: {}.",
                 self.with_interval(found, difference)
             )
-        });
+        }));
         let mut shapes = Table::new(
             "Shapes fitted to the means: the share of their variance that each explains, where it flattens, and its root mean \
              square error for the ratings of a subject left out.",
@@ -46,16 +45,15 @@ impl Sections<'_> {
                 ]);
             }
         }
-        format!(
-            "<section>\n<h2>Where the curves flatten</h2>\n{}{difference}{}<p class=\"note\">Linear plateau of the means (Hudson \
+        let section = Section::new("Where the curves flatten").paragraphs(Style::Plain, paragraphs);
+        Some(section.table(shapes).note(format!(
+            "Linear plateau of the means (Hudson \
              1966); intervals by drawing whole subjects again {} times (expanded percentiles, Hesterberg 2015). The exponential \
              flattens where it has made up 95% of the way. Equivalence: paired two one-sided tests against the highest \
-             {}, from above, until the first fails; a difference that is not significant is never taken for none.</p>\n</section>\n",
-            paragraphs.concat(),
-            shapes.to_html(),
+             {}, from above, until the first fails; a difference that is not significant is never taken for none.",
             found.settings.n_resamples,
             escaped(&found.factor)
-        )
+        )))
     }
 
     fn with_interval(&self, found: &Asymptotes, estimate: Estimate) -> String {
@@ -93,24 +91,24 @@ impl Sections<'_> {
     }
 
     /// The families of tests that the protocol asks for.
-    pub(crate) fn follow_ups(&self) -> String {
+    pub(crate) fn follow_ups(&self) -> Option<Section> {
         let families = &self.analysis.table.follow_ups;
         if families.is_empty() {
-            return String::new();
+            return None;
         }
-        let tables: Vec<String> = families.iter().map(|family| self.family(family)).collect();
-        format!(
-            "<section>\n<h2>Follow-up tests</h2>\n{}<p class=\"note\">Each comparison has an error term of its own, the \
+        let section = (families.iter()).fold(Section::new("Follow-up tests"), |section, family| {
+            self.family(section, family)
+        });
+        Some(section.note(
+            "Each comparison has an error term of its own, the \
              subjects’ scores of that contrast, so none needs sphericity. <i>d</i><sub>z</sub> is the difference over the \
              standard deviation of these scores, <i>d</i><sub>av</sub> over the mean standard deviation of the two \
-             means. Intervals are not adjusted; adjusted <i>p</i> values are over all lines of a table (Bonferroni’s stand in <code>anova.json</code>). Simple effects: \
-             Greenhouse–Geisser <i>p</i>.</p>\n</section>\n",
-            tables.concat()
-        )
+             means. Intervals are not adjusted; adjusted <i>p</i> values are over all lines of a table (Bonferroni’s stand in \
+             <code>follow-ups.csv</code>). Simple effects: Greenhouse–Geisser <i>p</i>.",
+        ))
     }
 
-    fn family(&self, family: &FollowUp) -> String {
-        let mut html = String::new();
+    fn family(&self, mut section: Section, family: &FollowUp) -> Section {
         let caption = escaped(&family.title);
         if !family.simple_effects.is_empty() {
             let columns = [
@@ -136,7 +134,7 @@ impl Sections<'_> {
                     fraction_cell(effect.pes, 3),
                 ]);
             }
-            html.push_str(&table.to_html());
+            section = section.table(table);
         }
         if !family.comparisons.is_empty() {
             let interval = format!("{} CI", self.percent());
@@ -159,19 +157,16 @@ impl Sections<'_> {
                 }
                 table.row(&cells);
             }
-            html.push_str(&table.to_html());
+            section = section.table(table);
         }
-        let warnings: Vec<String> = (family.warnings.iter())
-            .map(|warning| format!("<p class=\"note\">{}.</p>\n", escaped(warning)))
-            .collect();
-        html + &warnings.concat()
+        let warnings = family.warnings.iter();
+        let warnings = warnings.map(|warning| format!("{}.", escaped(warning)));
+        section.paragraphs(Style::Note, warnings.collect())
     }
 
     /// Permutation tests, aligned ranks and Friedman's test beside the F tests.
-    pub(crate) fn distribution_free(&self) -> String {
-        let Some(free) = &self.analysis.table.distribution_free else {
-            return String::new();
-        };
+    pub(crate) fn distribution_free(&self) -> Option<Section> {
+        let free = self.analysis.table.distribution_free.as_ref()?;
         let columns = [
             "Effect",
             "<i>p</i> of <i>F</i> (GG)",
@@ -208,7 +203,7 @@ impl Sections<'_> {
         let friedman: Vec<String> = (free.friedman.iter())
             .map(|one| {
                 format!(
-                    "<li>Friedman, {}: χ²({}) = {:.2}, {}; Kendall’s <i>W</i> = {}.</li>\n",
+                    "Friedman, {}: χ²({}) = {:.2}, {}; Kendall’s <i>W</i> = {}.",
                     escaped(&one.factor),
                     one.df,
                     one.chi_square,
@@ -217,14 +212,15 @@ impl Sections<'_> {
                 )
             })
             .collect();
-        format!(
-            "<section>\n<h2>Does the scale matter?</h2>\n<p>Ratings are whole numbers, and their steps may not be equal. These \
+        let section = Section::new("Does the scale matter?").paragraph(
+            "Ratings are whole numbers, and their steps may not be equal. These \
              tests suppose neither a normal distribution nor sphericity; where they agree with the <i>F</i> tests, that does not \
-             matter here.</p>\n{}<ul class=\"note\">\n{}</ul>\n<p class=\"note\">A permutation <i>p</i> cannot be smaller than \
-             one over the number of arrangements, twice that where all signs can be turned together.</p>\n</section>\n",
-            table.to_html(),
-            friedman.concat()
-        )
+             matter here.",
+        );
+        Some(section.table(table).list(Style::Note, friedman).note(
+            "A permutation <i>p</i> cannot be smaller than \
+             one over the number of arrangements, twice that where all signs can be turned together.",
+        ))
     }
 }
 

@@ -3,20 +3,18 @@
 use protocols::rating::RatingRow;
 
 use crate::apa;
+use crate::document::{Section, Table};
+use crate::fragility_section::FEWEST_OBSERVERS;
 use crate::interval::{mean, standard_deviation};
-use crate::page::{Table, escaped};
+use crate::page::escaped;
 use crate::screening::{ObserverScreening, correlation};
 use crate::sections::Sections;
+use crate::study_analysis::opinion_score;
 use crate::tail::{f_tail, t_quantile};
 
-/// With fewer observers BT.500 calls a study informal.
-const FEWEST_OBSERVERS: usize = 15;
-
 impl Sections<'_> {
-    pub(crate) fn observers(&self) -> String {
-        let Some(screening) = &self.analysis.observers else {
-            return String::new();
-        };
+    pub(crate) fn observers(&self) -> Option<Section> {
+        let screening = self.analysis.observers.as_ref()?;
         let drifts = self.drifts(screening);
         let columns = [
             "Observer",
@@ -36,15 +34,15 @@ impl Sections<'_> {
         for (index, drift) in drifts.iter().enumerate() {
             table.row(&observer_cells(screening, index, drift));
         }
-        format!(
-            "<section>\n<h2>Can the observers be trusted?</h2>\n<p>{}</p>\n{}<p class=\"note\">Both screens are reported; neither \
+        let section = Section::new("Can the observers be trusted?");
+        let section = section.paragraph(self.trust_in_words(screening, &drifts));
+        Some(section.table(table).note(
+            "Both screens are reported; neither \
              was applied: every observer above is in every result. Against random, inverted, constant and half-shuffled \
              ratings the correlation screen finds nearly all and the kurtosis screen few, so it is the one to act on. The \
              change over the session is the slope of the ratings, less mean opinion and bias, from the first trial to the \
-             last; slower or faster is the correlation of the logarithm of the answer time with the trial.</p>\n</section>\n",
-            self.trust_in_words(screening, &drifts),
-            table.to_html()
-        )
+             last; slower or faster is the correlation of the logarithm of the answer time with the trial.",
+        ))
     }
 
     fn trust_in_words(&self, screening: &ObserverScreening, drifts: &[Drift]) -> String {
@@ -97,7 +95,7 @@ impl Sections<'_> {
 
     /// How each observer changed over the session.
     fn drifts(&self, screening: &ObserverScreening) -> Vec<Drift> {
-        let opinions = self.opinion_of_each_image();
+        let opinions = &self.analysis.opinions;
         (screening.observers.iter())
             .map(|observer| {
                 let mut rows: Vec<&RatingRow> = (self.ratings.rows.iter())
@@ -106,11 +104,8 @@ impl Sections<'_> {
                 rows.sort_by_key(|row| (row.session_id, row.trial_id));
                 let residuals: Vec<f64> = (rows.iter())
                     .map(|row| {
-                        let opinion = opinions
-                            .get(row.stimulus_id.as_str())
-                            .copied()
-                            .unwrap_or(0.0);
-                        f64::from(row.rating) - opinion - observer.bias
+                        let opinion = opinions.get(&row.stimulus_id).copied().unwrap_or(0.0);
+                        opinion_score(row) - opinion - observer.bias
                     })
                     .collect();
                 let ln_times: Vec<f64> = (rows.iter())
@@ -118,12 +113,6 @@ impl Sections<'_> {
                     .collect();
                 Drift::new(&residuals, &ln_times)
             })
-            .collect()
-    }
-
-    fn opinion_of_each_image(&self) -> std::collections::BTreeMap<&str, f64> {
-        (self.analysis.conditions.iter())
-            .map(|condition| (condition.stimulus.id.as_str(), condition.mean))
             .collect()
     }
 }

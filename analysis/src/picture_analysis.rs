@@ -11,7 +11,10 @@ use std::collections::BTreeMap;
 use protocols::{InputError, Missing, StimulusId, Study, StudyImage};
 
 use crate::cell_matrix::missing_ratings;
-use crate::study_analysis::{Incomplete, StudyAnalysis, SubjectRatings, ratings_by_subject};
+use crate::fragility::Fragility;
+use crate::study_analysis::{
+    Incomplete, StudyAnalysis, SubjectRatings, analysed_scale, ratings_by_subject, screening,
+};
 use crate::study_ratings::StudyRatings;
 use crate::{
     AnalysisOptions, CellMatrix, CellSummary, Observations, TableAnalysis, cell_summaries,
@@ -55,30 +58,17 @@ impl PictureAnalysis {
         let mut images = study.protocol.stimuli.images();
         images.retain(|image| image.is_rated);
         let (members, incomplete) = complete(&images, ratings_by_subject(&ratings.rows));
-        let observations = observations(study, ratings, &images, &members);
-        if members.is_empty() || observations.is_empty() {
-            let found = format!("no complete subject ({} unfinished)", incomplete.len());
-            let expected = "subjects who rated every picture";
-            return Err(InputError::new(&ratings.folder, found, expected));
-        }
-        let names: Vec<String> = incomplete.iter().map(ToString::to_string).collect();
-        if plan.missing == Missing::Fail && !names.is_empty() {
-            return Err(missing_ratings(&ratings.folder, &names));
-        }
-        let mut cells = CellMatrix::with_missing(&observations, plan.missing)?;
-        if !names.is_empty() {
-            let unfinished = incomplete.iter().map(|one| one.subject.clone());
-            cells.dropped_subjects.extend(unfinished);
-            let warning = format!(
-                "left out, because ratings are missing: {}",
-                names.join(", ")
-            );
-            cells.warnings.push(warning);
-        }
+        let cells = analysed_cells(study, ratings, &images, (&members, &incomplete))?;
         let mut subjects: Vec<String> = members.keys().cloned().collect();
         subjects.sort_by(|left, right| crate::natural_order(left, right));
         let options = AnalysisOptions::planned(plan);
         let table = TableAnalysis::new(&cells, &[], plan.sums_of_squares, &options)?;
+        let fragility = Fragility::new(&cells, &table.anova, plan, analysed_scale(study));
+        let ids: Vec<&StimulusId> = images.iter().map(|image| &image.id).collect();
+        let means = image_means(study, ratings, &images, &members);
+        let opinions = (means.iter())
+            .map(|mean| (mean.of.id.clone(), mean.summary.mean))
+            .collect();
         let summaries = cell_summaries(&cells, plan.confidence);
         let of_cell = |summary: CellSummary| Mean {
             of: cells
@@ -100,10 +90,46 @@ impl PictureAnalysis {
                 .map(|factor| factor.levels.clone())
                 .collect(),
             cells: summaries.into_iter().map(of_cell).collect(),
-            images: image_means(study, ratings, &images, &members),
-            study: StudyAnalysis::of_effects(subjects, incomplete, table),
+            images: means,
+            study: StudyAnalysis {
+                observers: screening(&ids, &members, study.protocol.session.layout),
+                opinions,
+                ..StudyAnalysis::of_effects(subjects, incomplete, table, fragility)
+            },
         })
     }
+}
+
+/// The design's cells of those who rated every picture; `incomplete` are named in a warning, or refused if the protocol
+/// says so.
+fn analysed_cells(
+    study: &Study,
+    ratings: &StudyRatings,
+    images: &[StudyImage],
+    (members, incomplete): (&BTreeMap<String, SubjectRatings>, &[Incomplete]),
+) -> Result<CellMatrix, InputError> {
+    let plan = &study.protocol.analysis;
+    let observations = observations(study, ratings, images, members);
+    if members.is_empty() || observations.is_empty() {
+        let found = format!("no complete subject ({} unfinished)", incomplete.len());
+        let expected = "subjects who rated every picture";
+        return Err(InputError::new(&ratings.folder, found, expected));
+    }
+    let names: Vec<String> = incomplete.iter().map(ToString::to_string).collect();
+    if plan.missing == Missing::Fail && !names.is_empty() {
+        return Err(missing_ratings(&ratings.folder, &names));
+    }
+    let mut cells = CellMatrix::with_missing(&observations, plan.missing)?;
+    if !names.is_empty() {
+        let unfinished = incomplete.iter().map(|one| one.subject.clone());
+        cells.dropped_subjects.extend(unfinished);
+        let warning = format!(
+            "left out, because ratings are missing: {}",
+            names.join(", ")
+        );
+        cells.warnings.push(warning);
+    }
+    Ok(cells)
 }
 
 /// Who rated every picture, and who did not.

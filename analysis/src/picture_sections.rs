@@ -4,33 +4,38 @@ use protocols::Study;
 
 use crate::anova_table::{quoted, shortest};
 use crate::apa::{self, LeadingTest};
-use crate::page::{Table, escaped};
+use crate::document::{Document, Section, Style, Table};
+use crate::page::escaped;
 use crate::picture_analysis::PictureAnalysis;
 use crate::results_text::effect_name;
 use crate::sections::Sections;
 
 impl Sections<'_> {
-    /// The body of the page.
-    pub(crate) fn to_html_of_pictures(&self, pictures: &PictureAnalysis) -> String {
-        [
-            self.head(),
+    /// The whole report.
+    pub(crate) fn document_of_pictures(&self, pictures: &PictureAnalysis) -> Document {
+        let sections = [
             self.banners(),
-            self.result_of_effects(),
-            self.figure_of_cells(pictures),
-            self.anova(),
+            Some(self.result_of_effects()),
+            Some(self.the_study()),
+            Some(self.figure_of_cells(pictures)),
+            Some(self.anova()),
             self.published(),
             self.asymptotes(),
-            self.means_of_cells(pictures),
+            Some(self.means_of_cells(pictures)),
             self.follow_ups(),
             self.distribution_free(),
-            self.quality(),
-            self.provenance(),
-        ]
-        .concat()
+            self.observers(),
+            Some(self.fragility()),
+            Some(self.deviations()),
+            Some(self.quality()),
+            Some(self.to_paste()),
+            Some(self.provenance()),
+        ];
+        self.with_head(sections.into_iter().flatten().collect())
     }
 
     /// A sentence for each effect.
-    fn result_of_effects(&self) -> String {
+    fn result_of_effects(&self) -> Section {
         let plan = &self.study.protocol.analysis;
         let sentences = self.analysis.anova.effects.iter().map(|row| {
             let is_significant = LeadingTest::new(row, plan.correction)
@@ -42,29 +47,24 @@ impl Sections<'_> {
                 (false, true) => "No significant interaction was found of",
             };
             let test = apa::f_test(row, plan.correction);
-            format!(
-                "<p class=\"result\">{found} {}, {test}.</p>\n",
-                effect_name(&row.effect)
-            )
+            format!("{found} {}, {test}.", effect_name(&row.effect))
         });
-        self.result_and_design(&sentences.collect::<String>())
+        Section::new("Result").paragraphs(Style::Result, sentences.collect())
     }
 
-    fn figure_of_cells(&self, pictures: &PictureAnalysis) -> String {
+    fn figure_of_cells(&self, pictures: &PictureAnalysis) -> Section {
         let n = self.analysis.subjects.len();
         let factors: Vec<String> = pictures.factors.iter().map(|name| escaped(name)).collect();
-        format!(
-            "<figure>\n{}<figcaption>Mean rating of {} for each level of {}. Bars are {} within-subject intervals \
-             (Cousineau–Morey, <i>n</i> = {n}): they are for comparing cells, not for generalising a mean.</figcaption>\n\
-             </figure>\n",
-            self.figure_svg,
+        self.with_figure(format!(
+            "Mean rating of {} for each level of {}. Bars are {} within-subject intervals \
+             (Cousineau–Morey, <i>n</i> = {n}): they are for comparing cells, not for generalising a mean.",
             self.who(),
             factors.join(" and "),
             self.percent(),
-        )
+        ))
     }
 
-    fn means_of_cells(&self, pictures: &PictureAnalysis) -> String {
+    fn means_of_cells(&self, pictures: &PictureAnalysis) -> Section {
         let percent = self.percent();
         let names: Vec<String> = pictures.factors.iter().map(|name| escaped(name)).collect();
         let mut columns: Vec<&str> = names.iter().map(String::as_str).collect();
@@ -87,7 +87,7 @@ impl Sections<'_> {
             ]);
             table.row(&line);
         }
-        format!("<section>\n<h2>Means</h2>\n{}</section>\n", table.to_html())
+        Section::new("Means").table(table)
     }
 }
 

@@ -18,6 +18,8 @@ const TOP: f64 = 24.0;
 const PANEL: f64 = 230.0;
 /// From one line of text to the next.
 const STEP: f64 = 20.0;
+/// With more numbers of subjects only every second, third and so on has its number and its column.
+const MOST_LABELS: usize = 25;
 const PALETTE: Palette = Palette::PRINT;
 
 /// One line of a panel: a name, and for each number of subjects its value with its interval.
@@ -153,7 +155,8 @@ impl Power {
             value += panel.step;
         }
         let bottom = panel.top + PANEL;
-        for (place, point) in self.points.iter().enumerate() {
+        let every = self.points.len().div_ceil(MOST_LABELS);
+        for (place, point) in self.points.iter().enumerate().step_by(every) {
             let x = self.x(place);
             _ = writeln!(
                 svg,
@@ -209,7 +212,9 @@ impl Power {
     fn grid(&self, svg: &mut String, top: f64, lines: &[Line]) -> f64 {
         let ink = PALETTE.ink;
         let left = 190.0_f64;
-        let width = ((RIGHT - left) / self.points.len() as f64).min(44.0);
+        let every = self.points.len().div_ceil(MOST_LABELS);
+        let n_columns = self.points.len().div_ceil(every);
+        let width = ((RIGHT - left) / n_columns as f64).min(44.0);
         let row_height = 19.0_f64;
         _ = writeln!(
             svg,
@@ -218,7 +223,7 @@ impl Power {
             top + 8.0
         );
         let first = top + 42.0;
-        for (column, point) in self.points.iter().enumerate() {
+        for (column, point) in self.points.iter().step_by(every).enumerate() {
             let x = width.mul_add(column as f64 + 0.5, left);
             _ = writeln!(
                 svg,
@@ -236,7 +241,7 @@ impl Power {
                 y + 14.0,
                 escaped(&line.name)
             );
-            for (column, value) in line.values.iter().enumerate() {
+            for (column, value) in line.values.iter().step_by(every).enumerate() {
                 let x = width.mul_add(column as f64, left);
                 let text = fraction(value[0], 2);
                 let paper = if value[0] > 0.55 { PALETTE.paper } else { ink };

@@ -6,23 +6,20 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use protocols::{Access, Observer, Stimuli, Study, write_atomically};
+use protocols::{Access, Observer, Scale, Stimuli, Study, write_atomically};
 
 use crate::anova_table::{quoted, shortest};
 use crate::cell_figure::CellFigure;
 use crate::data_sections::figure_name;
+use crate::document::Document;
 use crate::figure::{Figure, Palette};
-use crate::page::page;
-use crate::picture::png_from_svg;
+use crate::picture::FigurePicture;
 use crate::picture_analysis::PictureAnalysis;
 use crate::picture_sections;
 use crate::sections::Sections;
-use crate::study_analysis::StudyAnalysis;
+use crate::study_analysis::{StudyAnalysis, analysed_scale};
 use crate::study_ratings::{Pilots, StudyRatings};
 use crate::{AnalysisError, AnovaTable};
-
-/// Pixels of the PNG for each unit of the SVG: 1520 pixels wide.
-const PNG_SCALE: f32 = 2.0;
 
 /// What a report was made from and where it stands.
 #[derive(Clone, Debug)]
@@ -41,8 +38,9 @@ pub struct ReportSummary {
     pub warnings: Vec<String>,
 }
 
-/// Analyses the ratings of `study` in `data_dir` and writes the report into `out_dir`: `report.html`,
-/// `anova.json`, `anova.csv`, `means.csv`, `figure-10.svg`, `figure-10.png` (for own pictures `figure.svg` and `.png`).
+/// Analyses the ratings of `study` in `data_dir` and writes the report into `out_dir`: `report.html`, `report.md`,
+/// `tables.tex`, `to-paste.txt`, `anova.json`, `anova.csv`, `follow-ups.csv`, `asymptotes.csv`, `means.csv`, and `figure-10` (for own
+/// pictures `figure`) as `.svg`, `-outlined.svg`, `.pdf` and `.png`.
 ///
 /// Where no `out_dir` is named, simulated observers have a folder of their own, so that their report never
 /// takes the place of people's.
@@ -93,41 +91,32 @@ struct Contents {
 fn of_rendered(study: &Study, ratings: &StudyRatings) -> Result<Contents, AnalysisError> {
     let analysis = StudyAnalysis::new(study, ratings)?;
     let who = ratings.who(analysis.subjects.len());
+    let means = (analysis.conditions.iter())
+        .map(|condition| (condition.mean, condition.half_within.unwrap_or(0.0)));
+    let scale = figure_scale(study, means);
     let figure = |palette: Palette| {
         let figure = Figure {
             analysis: &analysis,
-            scale: study.protocol.session.scale,
+            scale,
             confidence: study.protocol.analysis.confidence,
             who: &who,
             palette,
         };
         figure.to_svg()
     };
-    let svg = figure(Palette::PRINT);
     let sections = Sections {
         study,
         ratings,
         analysis: &analysis,
         figure_svg: &figure(Palette::PAGE),
     };
-    let title = format!("Report: {}", study.protocol.study);
-    let files = vec![
-        (
-            "report.html".to_owned(),
-            page(&title, &sections.to_html()).into_bytes(),
-        ),
-        (
-            "anova.json".to_owned(),
-            analysis.table.to_json().into_bytes(),
-        ),
-        ("anova.csv".to_owned(), analysis.anova.to_csv().into_bytes()),
-        (
-            "means.csv".to_owned(),
-            means_csv(&analysis, study.protocol.analysis.confidence).into_bytes(),
-        ),
-        ("figure-10.png".to_owned(), png_from_svg(&svg, PNG_SCALE)?),
-        ("figure-10.svg".to_owned(), svg.into_bytes()),
-    ];
+    let means = means_csv(&analysis, study.protocol.analysis.confidence);
+    let files = files(
+        &sections,
+        &sections.document(),
+        means,
+        figure(Palette::PRINT),
+    )?;
     Ok(Contents {
         anova_of: analysis,
         files,
@@ -136,40 +125,74 @@ fn of_rendered(study: &Study, ratings: &StudyRatings) -> Result<Contents, Analys
 
 fn of_pictures(study: &Study, ratings: &StudyRatings) -> Result<Contents, AnalysisError> {
     let pictures = PictureAnalysis::new(study, ratings)?;
+    let means = (pictures.cells.iter())
+        .map(|cell| (cell.summary.mean, cell.summary.half_within.unwrap_or(0.0)));
+    let scale = figure_scale(study, means);
     let figure = |palette: Palette| {
         let figure = CellFigure {
             pictures: &pictures,
-            scale: study.protocol.session.scale,
+            scale,
             palette,
         };
         figure.to_svg()
     };
-    let svg = figure(Palette::PRINT);
     let sections = Sections {
         study,
         ratings,
         analysis: &pictures.study,
         figure_svg: &figure(Palette::PAGE),
     };
-    let title = format!("Report: {}", study.protocol.study);
-    let html = page(&title, &sections.to_html_of_pictures(&pictures));
-    let (anova, table) = (&pictures.study.anova, &pictures.study.table);
-    let name = figure_name(study);
-    let files = vec![
-        ("report.html".to_owned(), html.into_bytes()),
-        ("anova.json".to_owned(), table.to_json().into_bytes()),
-        ("anova.csv".to_owned(), anova.to_csv().into_bytes()),
-        (
-            "means.csv".to_owned(),
-            picture_sections::means_csv(study, &pictures).into_bytes(),
-        ),
-        (format!("{name}.png"), png_from_svg(&svg, PNG_SCALE)?),
-        (format!("{name}.svg"), svg.into_bytes()),
-    ];
+    let document = sections.document_of_pictures(&pictures);
+    let means = picture_sections::means_csv(study, &pictures);
+    let files = files(&sections, &document, means, figure(Palette::PRINT))?;
     Ok(Contents {
         anova_of: pictures.study,
         files,
     })
+}
+
+/// Every file of a report, the page first.
+fn files(
+    sections: &Sections<'_>,
+    document: &Document,
+    means_csv: String,
+    figure_svg: String,
+) -> Result<Vec<(String, Vec<u8>)>, AnalysisError> {
+    let table = &sections.analysis.table;
+    let picture = FigurePicture::new(&figure_svg)?;
+    let name = figure_name(sections.study);
+    let text = |name: &str, text: String| (name.to_owned(), text.into_bytes());
+    Ok(vec![
+        text("report.html", document.to_html()),
+        text("report.md", document.to_markdown()),
+        text("tables.tex", document.to_latex()),
+        text("to-paste.txt", sections.to_paste_as_text()),
+        text("anova.json", table.to_json()),
+        text("anova.csv", table.anova.to_csv()),
+        text("follow-ups.csv", table.follow_ups_csv()),
+        text("asymptotes.csv", table.asymptotes_csv()),
+        text("means.csv", means_csv),
+        (format!("{name}.png"), picture.to_png()?),
+        (format!("{name}.pdf"), picture.to_pdf()),
+        text(&format!("{name}-outlined.svg"), picture.to_outlines()),
+        text(&format!("{name}.svg"), figure_svg),
+    ])
+}
+
+/// The ends of a figure's axis: those of the scale, but of differences of pairs whole numbers about the intervals.
+fn figure_scale(study: &Study, means: impl Iterator<Item = (f64, f64)>) -> Scale {
+    if let Some(scale) = analysed_scale(study) {
+        return scale;
+    }
+    let [low, high] = means.fold([-1.0_f64, 1.0_f64], |[low, high], (mean, half)| {
+        [low.min(mean - half), high.max(mean + half)]
+    });
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "no further apart than the ends of a scale"
+    )]
+    let [lowest, highest] = [low.floor() as i32, high.ceil() as i32];
+    Scale { lowest, highest }
 }
 
 /// One line for each image: its mean, and the ends of both intervals.

@@ -1,11 +1,11 @@
-//! The sections of a report, in HTML.
-
-use std::fmt::Write as _;
+//! The sections of a report on rendered images, and what they share with a report on own pictures.
 
 use protocols::{ChannelGroup, Correction, Observer, PublishedEffect, Study};
 
-use crate::apa;
-use crate::page::{Table, escaped};
+use crate::apa::{self, LeadingTest};
+use crate::data_sections::figure_name;
+use crate::document::{Block, Document, Section, Style, Table};
+use crate::page::escaped;
 use crate::results_text::{effect_name, key_result, printed_designs, remarks, sphericity};
 use crate::study_analysis::{ConditionMean, StudyAnalysis};
 use crate::study_in_words::design_in_words;
@@ -24,25 +24,28 @@ pub(crate) struct Sections<'a> {
 }
 
 impl Sections<'_> {
-    /// The body of the page.
-    pub(crate) fn to_html(&self) -> String {
-        [
-            self.head(),
+    /// The whole report.
+    pub(crate) fn document(&self) -> Document {
+        let sections = [
             self.banners(),
-            self.result(),
-            self.figure(),
-            self.anova(),
+            Some(self.result()),
+            Some(self.the_study()),
+            Some(self.figure()),
+            Some(self.anova()),
             self.published(),
             self.asymptotes(),
-            self.means(),
+            Some(self.means()),
             self.differences(),
             self.follow_ups(),
             self.distribution_free(),
             self.observers(),
-            self.quality(),
-            self.provenance(),
-        ]
-        .concat()
+            Some(self.fragility()),
+            Some(self.deviations()),
+            Some(self.quality()),
+            Some(self.to_paste()),
+            Some(self.provenance()),
+        ];
+        self.with_head(sections.into_iter().flatten().collect())
     }
 
     pub(crate) fn percent(&self) -> String {
@@ -53,17 +56,17 @@ impl Sections<'_> {
         self.ratings.who(self.analysis.subjects.len())
     }
 
-    pub(crate) fn head(&self) -> String {
+    pub(crate) fn with_head(&self, sections: Vec<Section>) -> Document {
         let protocol = &self.study.protocol;
-        format!(
-            "<header>\n<p class=\"byline\">Report of the study <b>{}</b></p>\n<h1>{}</h1>\n\
-             <p class=\"byline\">{}</p>\n<p class=\"byline\">{} · {}</p>\n</header>\n",
-            escaped(&protocol.study),
-            escaped(&protocol.title),
-            escaped(&protocol.source),
-            self.who(),
-            self.dates()
-        )
+        Document {
+            study: escaped(&protocol.study),
+            title: escaped(&protocol.title),
+            bylines: vec![
+                escaped(&protocol.source),
+                format!("{} · {}", self.who(), self.dates()),
+            ],
+            sections,
+        }
     }
 
     /// When the ratings were taken, by the data.
@@ -84,58 +87,52 @@ impl Sections<'_> {
         }
     }
 
-    pub(crate) fn banners(&self) -> String {
-        let mut html = String::new();
+    pub(crate) fn banners(&self) -> Option<Section> {
+        let mut banners = Vec::new();
         if self.ratings.observer == Observer::Simulated {
-            html.push_str(
-                "<div class=\"banner\"><strong>SIMULATED.</strong> No person took part. The ratings come from a published \
+            banners.push(
+                "<strong>SIMULATED.</strong> No person took part. The ratings come from a published \
                  model of colour vision (ColorVideoVDP), seen through each simulated observer’s own bias, gain and noise as \
-                 the protocol states them. They show that the study runs; they are no evidence about people.</div>\n",
+                 the protocol states them. They show that the study runs; they are no evidence about people."
+                    .to_owned(),
             );
         }
         if self.ratings.sessions.iter().any(|session| session.is_pilot) {
-            html.push_str(
-                "<div class=\"banner\"><strong>PILOT.</strong> Trial runs with shortened times are among these ratings, \
-                 because they were asked for.</div>\n",
+            banners.push(
+                "<strong>PILOT.</strong> Trial runs with shortened times are among these ratings, \
+                 because they were asked for."
+                    .to_owned(),
             );
         }
         if self.analysis.subjects.len() < 6 {
-            // Writing to a `String` cannot fail.
-            _ = writeln!(
-                html,
-                "<div class=\"banner\"><strong>FEW SUBJECTS.</strong> With {}, every test and interval below has little \
-                 power and rests on its assumptions.</div>",
+            banners.push(format!(
+                "<strong>FEW SUBJECTS.</strong> With {}, every test and interval below has little \
+                 power and rests on its assumptions.",
                 self.who()
-            );
+            ));
         }
-        html
+        let section = Section::without_heading().paragraphs(Style::Banner, banners);
+        (!section.blocks.is_empty()).then_some(section)
     }
 
-    fn result(&self) -> String {
-        let paragraphs: Vec<String> = key_result(self.study, self.analysis)
-            .into_iter()
-            .map(|paragraph| format!("<p class=\"result\">{paragraph}</p>\n"))
-            .collect();
-        self.result_and_design(&paragraphs.concat())
+    fn result(&self) -> Section {
+        let paragraphs = key_result(self.study, self.analysis);
+        Section::new("Result").paragraphs(Style::Result, paragraphs)
     }
 
-    pub(crate) fn result_and_design(&self, paragraphs: &str) -> String {
-        format!(
-            "<section>\n<h2>Result</h2>\n{paragraphs}</section>\n<section>\n<h2>The study</h2>\n<p>{}</p>\n</section>\n",
-            design_in_words(&self.study.protocol)
-        )
+    pub(crate) fn the_study(&self) -> Section {
+        Section::new("The study").paragraph(design_in_words(&self.study.protocol))
     }
 
-    fn figure(&self) -> String {
+    fn figure(&self) -> Section {
         let n = self.analysis.subjects.len();
         let last = self.analysis.conditions.last();
         let shares_an_image = last.is_some_and(|condition| condition.curves.len() > 1);
-        format!(
-            "<figure>\n{}<figcaption><b>Figure 10.</b> Mean rating of {} against the number of rays for the chromatic \
+        let caption = format!(
+            "<b>Figure 10.</b> Mean rating of {} against the number of rays for the chromatic \
              channels (squares) and for the achromatic channel (diamonds); the other channels were held. Bars are {} \
              within-subject intervals (Cousineau–Morey, <i>n</i> = {n}): they are for comparing images, not for \
-             generalising a mean.{}</figcaption>\n</figure>\n",
-            self.figure_svg,
+             generalising a mean.{}",
             self.who(),
             self.percent(),
             if shares_an_image {
@@ -143,33 +140,47 @@ impl Sections<'_> {
             } else {
                 ""
             }
-        )
+        );
+        self.with_figure(caption)
     }
 
-    pub(crate) fn anova(&self) -> String {
-        let remarks: Vec<String> = (remarks(&self.analysis.anova).iter())
-            .map(|remark| format!("<li>{}</li>\n", escaped(remark)))
-            .collect();
-        let list = if remarks.is_empty() {
-            String::new()
-        } else {
-            format!("<ul class=\"note\">\n{}</ul>\n", remarks.concat())
-        };
-        format!(
-            "<section>\n<h2>Analysis of variance</h2>\n<p>{}{}</p>\n{}\
-             <p class=\"note\">η²<sub>p</sub>, η²<sub>G</sub>, ω²<sub>p</sub>: partial and generalized eta squared, partial \
-             omega squared. The Huynh–Feldt ε is Lecoutre’s; it and Chi–Muller’s stand as they come out, above 1 they count as 1. \
-             The p of Mauchly’s W is by its exact law. A dash marks what does not exist.</p>\n{list}</section>\n",
-            sphericity(
-                &self.analysis.anova,
-                self.study.protocol.analysis.correction
-            ),
-            self.exclusions(),
-            self.anova_table()
-        )
+    pub(crate) fn with_figure(&self, caption: String) -> Section {
+        Section::without_heading().block(Block::Figure {
+            svg: self.figure_svg.to_owned(),
+            file: figure_name(self.study).to_owned(),
+            caption,
+        })
     }
 
-    fn anova_table(&self) -> String {
+    pub(crate) fn anova(&self) -> Section {
+        let remarks = remarks(&self.analysis.anova);
+        let correction = self.study.protocol.analysis.correction;
+        Section::new("Analysis of variance")
+            .paragraph(format!(
+                "{}{}",
+                sphericity(&self.analysis.anova, correction),
+                self.exclusions()
+            ))
+            .table(self.tests(correction))
+            .table(self.corrections())
+            .note(
+                "η²<sub>p</sub>, η²<sub>G</sub>, ω²<sub>p</sub>: partial and generalized eta squared, partial \
+                 omega squared. The Huynh–Feldt ε is Lecoutre’s; it and Chi–Muller’s stand as they come out, above 1 they count as 1. \
+                 The p of Mauchly’s W is by its exact law. A dash marks what does not exist.",
+            )
+            .list(
+                Style::Note,
+                remarks.iter().map(|remark| escaped(remark)).collect(),
+            )
+    }
+
+    /// F, the uncorrected and the leading p, and the effect sizes.
+    fn tests(&self, correction: Correction) -> Table {
+        let caption = format!(
+            "Analysis of variance, type {}, of the ratings of {}.",
+            self.analysis.anova.sums_of_squares.numeral(),
+            self.who()
+        );
         let columns = [
             "Effect",
             "<i>df</i>",
@@ -177,41 +188,70 @@ impl Sections<'_> {
             "<i>p</i>",
             "ε",
             "<i>p</i>",
-            "ε",
-            "<i>p</i>",
-            "ε",
-            "<i>p</i>",
             "η²<sub>p</sub>",
             "η²<sub>G</sub>",
             "ω²<sub>p</sub>",
-            "<i>W</i>",
-            "<i>p</i>",
         ];
-        let heading = |text: &str, correction: Correction| {
-            let leads = self.study.protocol.analysis.correction == correction;
-            format!("{text}{}", if leads { " (leads)" } else { "" })
+        let leading = match correction {
+            Correction::None => "no correction",
+            Correction::GreenhouseGeisser => "Greenhouse–Geisser",
+            Correction::HuynhFeldt => "Huynh–Feldt",
+            Correction::ChiMuller => "Chi–Muller",
         };
-        let caption = format!(
-            "Analysis of variance, type {}, of the ratings of {}.",
-            self.analysis.anova.sums_of_squares.numeral(),
-            self.who()
-        );
         let mut table = Table::new(&caption, &columns).grouped(&[
             ("", 1),
-            (&heading("uncorrected", Correction::None), 3),
-            (
-                &heading("Greenhouse–Geisser", Correction::GreenhouseGeisser),
-                2,
-            ),
-            (&heading("Huynh–Feldt", Correction::HuynhFeldt), 2),
-            (&heading("Chi–Muller", Correction::ChiMuller), 2),
+            ("uncorrected", 3),
+            (&format!("{leading} (leads)"), 2),
             ("effect size", 3),
+        ]);
+        for row in &self.analysis.anova.effects {
+            let leading = LeadingTest::new(row, correction);
+            table.row(&[
+                effect_name(&row.effect),
+                format!("{}, {}", row.df_num, row.df_den),
+                number_cell(row.f, 2),
+                p_cell(row.p),
+                number_cell(leading.map(|test| test.epsilon), 3),
+                p_cell(leading.map(|test| test.p)),
+                fraction_cell(row.pes, 3),
+                fraction_cell(row.ges, 3),
+                fraction_cell(row.omega2, 3),
+            ]);
+        }
+        table
+    }
+
+    /// Every correction, and Mauchly's test.
+    fn corrections(&self) -> Table {
+        let columns = [
+            "Effect", "ε", "<i>p</i>", "ε", "<i>p</i>", "ε", "<i>p</i>", "ε", "<i>p</i>",
+            "<i>W</i>", "<i>p</i>",
+        ];
+        let caption = "The same tests under each correction for sphericity.";
+        let mut table = Table::new(caption, &columns).grouped(&[
+            ("", 1),
+            ("Greenhouse–Geisser", 2),
+            ("Huynh–Feldt", 2),
+            ("Chi–Muller", 2),
+            ("lower bound", 2),
             ("Mauchly", 2),
         ]);
         for row in &self.analysis.anova.effects {
-            table.row(&anova_cells(row));
+            table.row(&[
+                effect_name(&row.effect),
+                number_cell(row.gg_epsilon, 3),
+                p_cell(row.p_gg),
+                number_cell(row.hf_epsilon, 3),
+                p_cell(row.p_hf),
+                number_cell(row.cm_epsilon, 3),
+                p_cell(row.p_cm),
+                number_cell(row.lb_epsilon, 3),
+                p_cell(row.p_lb),
+                fraction_cell(row.mauchly_w, 3),
+                p_cell(row.mauchly_p_exact),
+            ]);
         }
-        table.to_html()
+        table
     }
 
     fn exclusions(&self) -> String {
@@ -228,11 +268,38 @@ impl Sections<'_> {
         sentences.concat()
     }
 
-    pub(crate) fn published(&self) -> String {
+    pub(crate) fn published(&self) -> Option<Section> {
         let published = &self.study.protocol.analysis.published;
         if published.is_empty() {
-            return String::new();
+            return None;
         }
+        let table = self.published_table(published);
+        let n_groups = if self.study.protocol.analysis.between.is_empty() {
+            1
+        } else {
+            2
+        };
+        let df_error = self.analysis.subjects.len().saturating_sub(n_groups);
+        let designs =
+            printed_designs(published, &self.who(), n_groups, df_error).unwrap_or_default();
+        let section = Section::new("Beside the paper")
+            .paragraph(format!(
+                "The paper prints <i>F</i> values and bounds on <i>p</i>; the <i>p</i> and η²<sub>p</sub> in the table follow from \
+                 <i>F</i> and its degrees of freedom. {designs}"
+            ))
+            .table(table);
+        let allowed = allowed_designs(published);
+        Some(if allowed.is_empty() {
+            section
+        } else {
+            section
+                .note("What the printed degrees of freedom allow, in one group or two:")
+                .list(Style::Note, allowed)
+        })
+    }
+
+    /// The printed tests beside those of this data set.
+    fn published_table(&self, published: &[PublishedEffect]) -> Table {
         let columns = [
             "Effect",
             "<i>F</i>",
@@ -273,23 +340,10 @@ impl Sections<'_> {
             }
             table.row(&cells);
         }
-        let n_groups = if self.study.protocol.analysis.between.is_empty() {
-            1
-        } else {
-            2
-        };
-        let df_error = self.analysis.subjects.len().saturating_sub(n_groups);
-        let designs =
-            printed_designs(published, &self.who(), n_groups, df_error).unwrap_or_default();
-        let allowed = allowed_designs(published);
-        format!(
-            "<section>\n<h2>Beside the paper</h2>\n<p>The paper prints <i>F</i> values and bounds on <i>p</i>; the <i>p</i> and \
-             η²<sub>p</sub> in the table follow from <i>F</i> and its degrees of freedom. {designs}</p>\n{}{allowed}</section>\n",
-            table.to_html()
-        )
+        table
     }
 
-    fn means(&self) -> String {
+    fn means(&self) -> Section {
         let percent = self.percent();
         let columns = [
             "Rays", "mean", "SD", "between", "within", "mean", "SD", "between", "within",
@@ -310,13 +364,13 @@ impl Sections<'_> {
             }
             table.row(&cells);
         }
-        format!("<section>\n<h2>Means</h2>\n{}</section>\n", table.to_html())
+        Section::new("Means").table(table)
     }
 
-    fn differences(&self) -> String {
+    fn differences(&self) -> Option<Section> {
         let all = &self.analysis.differences;
         if all.is_empty() {
-            return String::new();
+            return None;
         }
         let percent = self.percent();
         let interval = format!("{percent} CI");
@@ -350,36 +404,12 @@ impl Sections<'_> {
                 p_cell(one.p_holm),
             ]);
         }
-        format!(
-            "<section>\n<h2>The two sequences at each ray count</h2>\n{}<p class=\"note\">Each line is a paired <i>t</i> test of its \
-             own; Holm’s correction is over the ray counts. Where all subjects differ by the same amount there is no test.</p>\n\
-             </section>\n",
-            table.to_html()
-        )
+        let section = Section::new("The two sequences at each ray count").table(table);
+        Some(section.note(
+            "Each line is a paired <i>t</i> test of its own; Holm’s correction is over the ray counts. Where all subjects differ by the \
+             same amount there is no test.",
+        ))
     }
-}
-
-fn anova_cells(row: &EffectRow) -> Vec<String> {
-    let number = |value: Option<f64>, decimals: usize| {
-        value.map_or_else(|| "–".to_owned(), |value| format!("{value:.decimals$}"))
-    };
-    vec![
-        effect_name(&row.effect),
-        format!("{}, {}", row.df_num, row.df_den),
-        number(row.f, 2),
-        p_cell(row.p),
-        number(row.gg_epsilon, 3),
-        p_cell(row.p_gg),
-        number(row.hf_epsilon, 3),
-        p_cell(row.p_hf),
-        number(row.cm_epsilon, 3),
-        p_cell(row.p_cm),
-        fraction_cell(row.pes, 3),
-        fraction_cell(row.ges, 3),
-        fraction_cell(row.omega2, 3),
-        fraction_cell(row.mauchly_w, 3),
-        p_cell(row.mauchly_p_exact),
-    ]
 }
 
 fn mean_cells(condition: Option<&ConditionMean>) -> [String; 4] {
@@ -399,9 +429,9 @@ fn mean_cells(condition: Option<&ConditionMean>) -> [String; 4] {
 }
 
 /// For each printed F, the subjects, levels and groups that its degrees of freedom allow, up to two groups.
-fn allowed_designs(published: &[PublishedEffect]) -> String {
+fn allowed_designs(published: &[PublishedEffect]) -> Vec<String> {
     let whole = |df: f64| -> Option<u32> { format!("{df}").parse().ok() };
-    let lines: Vec<String> = (published.iter())
+    (published.iter())
         .filter_map(|effect| {
             let printed = PrintedF {
                 df_num: whole(effect.df_num)?,
@@ -415,22 +445,19 @@ fn allowed_designs(published: &[PublishedEffect]) -> String {
             let designs: Vec<String> = few.map(|design| design.to_string()).collect();
             let designs = escaped(&designs.join("; ")).replace(" x ", " × ");
             Some(format!(
-                "<li>{}, {printed}: {designs}.</li>\n",
+                "{}, {printed}: {designs}.",
                 effect_name(&effect.effect)
             ))
         })
-        .collect();
-    if lines.is_empty() {
-        return String::new();
-    }
-    format!(
-        "<p class=\"note\">What the printed degrees of freedom allow, in one group or two:</p>\n<ul class=\"note\">\n{}</ul>\n",
-        lines.concat()
-    )
+        .collect()
 }
 
 fn f_with_df(f: f64, df_num: f64, df_den: f64) -> String {
     format!("{f:.2} ({df_num}, {df_den})")
+}
+
+pub(crate) fn number_cell(value: Option<f64>, decimals: usize) -> String {
+    value.map_or_else(|| "–".to_owned(), |value| format!("{value:.decimals$}"))
 }
 
 pub(crate) fn fraction_cell(value: Option<f64>, decimals: usize) -> String {

@@ -10,7 +10,7 @@ use protocols::rating::RatingRow;
 use serde_json::Value;
 
 /// The facts of one session that its rows do not hold; `None` where the sidecar is silent.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct SidecarFacts {
     /// Whether there is a sidecar that can be read.
     pub(crate) is_readable: bool,
@@ -26,6 +26,63 @@ pub(crate) struct SidecarFacts {
     pub(crate) manifest_sha256: Option<String>,
     /// The version of the program that took the ratings.
     pub(crate) acuity_version: Option<String>,
+    /// Why the session was closed before its end, if it was.
+    pub(crate) closed: Option<String>,
+    /// How many sittings it took.
+    pub(crate) sittings: usize,
+    /// How many of them have no end.
+    pub(crate) sittings_cut_off: usize,
+    /// How often the window lost the keyboard.
+    pub(crate) focus_losses: u64,
+    /// The different stations of its sittings.
+    pub(crate) stations: Vec<StationFacts>,
+}
+
+/// Where a session was sat.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct StationFacts {
+    pub(crate) monitor: Option<String>,
+    pub(crate) monitor_px: Option<[u64; 2]>,
+    pub(crate) operating_system: Option<String>,
+    /// From the eye to the screen, where it was measured.
+    pub(crate) distance_cm: Option<f64>,
+    /// The angle of a pixel, where it was measured.
+    pub(crate) degrees_per_pixel: Option<f64>,
+}
+
+impl StationFacts {
+    /// The facts in the `station` of a sitting.
+    fn of(station: &Value) -> Self {
+        let text = |key: &str| station.get(key).and_then(Value::as_str).map(str::to_owned);
+        let measured = |key: &str| station.get("measured")?.get(key)?.as_f64();
+        let side = |place: usize| station.get("monitor_px")?.get(place)?.as_u64();
+        let pitch_mm = measured("width_mm")
+            .zip(measured("width_px"))
+            .map(|(mm, px)| mm / px);
+        let distance_cm = measured("distance_cm");
+        Self {
+            monitor: text("monitor"),
+            monitor_px: side(0).zip(side(1)).map(|(width, height)| [width, height]),
+            operating_system: text("operating_system"),
+            degrees_per_pixel: pitch_mm.zip(distance_cm).map(|(pitch_mm, distance_cm)| {
+                libm::atan(pitch_mm / (10.0 * distance_cm)).to_degrees()
+            }),
+            distance_cm,
+        }
+    }
+
+    /// The monitor, its pixels, the distance and the system, as far as they are known.
+    pub(crate) fn in_words(&self) -> String {
+        let parts = [
+            self.monitor.clone(),
+            self.monitor_px
+                .map(|[width, height]| format!("{width} × {height} pixels")),
+            self.distance_cm
+                .map(|distance| format!("at {distance:.1} cm")),
+            self.operating_system.clone(),
+        ];
+        parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+    }
 }
 
 impl SidecarFacts {
@@ -38,8 +95,27 @@ impl SidecarFacts {
             return Self::default();
         };
         let text = |key: &str| value.get(key).and_then(Value::as_str).map(str::to_owned);
+        let sittings: Vec<&Value> = (value.get("sittings").and_then(Value::as_array))
+            .into_iter()
+            .flatten()
+            .collect();
+        let is_missing = |sitting: &&&Value| sitting.get("ended_at").is_none_or(Value::is_null);
+        let focus_losses = |sitting: &&Value| sitting.get("focus_losses")?.as_u64();
+        let described = sittings.iter().filter_map(|sitting| sitting.get("station"));
+        let mut stations: Vec<StationFacts> = described
+            .filter(|station| station.is_object())
+            .map(StationFacts::of)
+            .collect();
+        stations.dedup();
         Self {
             is_readable: true,
+            closed: (value.get("closed").and_then(|closed| closed.get("reason")))
+                .and_then(Value::as_str)
+                .map(str::to_owned),
+            sittings: sittings.len(),
+            sittings_cut_off: sittings.iter().filter(is_missing).count(),
+            focus_losses: sittings.iter().filter_map(focus_losses).sum(),
+            stations,
             observer: text("observer"),
             subject_id: text("subject_id"),
             session_id: value.get("session_id").and_then(Value::as_u64),

@@ -8,11 +8,12 @@ use std::fmt;
 
 use protocols::rating::RatingRow;
 use protocols::{
-    AnalysisPlan, ChannelGroup, InputError, Layout, Missing, RayCount, Stimulus, StimulusId,
+    AnalysisPlan, ChannelGroup, InputError, Layout, Missing, RayCount, Scale, Stimulus, StimulusId,
     StimulusPlan, Study,
 };
 
 use crate::cell_matrix::missing_ratings;
+use crate::fragility::Fragility;
 use crate::interval::{mean, standard_deviation};
 use crate::p_adjustment::holm;
 use crate::screening::ObserverScreening;
@@ -35,6 +36,10 @@ pub(crate) struct StudyAnalysis {
     pub(crate) table: TableAnalysis,
     /// Who rated how, where everyone rated the same images.
     pub(crate) observers: Option<ObserverScreening>,
+    /// The mean of each image over these observers.
+    pub(crate) opinions: BTreeMap<StimulusId, f64>,
+    /// What the result hangs on.
+    pub(crate) fragility: Fragility,
     /// Chromatic less achromatic, by rising ray count; empty unless subjects rated both.
     pub(crate) differences: Vec<Difference>,
     /// The same over all ray counts of the analysis of variance.
@@ -110,8 +115,16 @@ impl StudyAnalysis {
         let by_subject = ratings_by_subject(&ratings.rows);
         let mut groups = subject_groups(study, &by_subject);
         let incomplete = leave_out_incomplete(&mut groups);
-        let table = analysis_as_planned(plan, ratings, &groups, &incomplete)?;
-        let observers = screening(&groups, study.protocol.session.layout);
+        let (cells, table) = analysis_as_planned(plan, ratings, &groups, &incomplete)?;
+        let fragility = Fragility::new(&cells, &table.anova, plan, analysed_scale(study));
+        let layout = study.protocol.session.layout;
+        let observers = match groups.as_slice() {
+            [Group { images, members }] => {
+                let ids: Vec<&StimulusId> = images.iter().map(|image| &image.id).collect();
+                screening(&ids, members, layout)
+            }
+            _ => None,
+        };
         let conditions = condition_means(study, ratings, &groups);
         let both_by_all = plan.between.is_empty();
         let differences = if both_by_all {
@@ -129,10 +142,14 @@ impl StudyAnalysis {
         Ok(Self {
             subjects,
             incomplete,
-            conditions,
             anova: table.anova.clone(),
             table,
             observers,
+            opinions: (conditions.iter())
+                .map(|condition| (condition.stimulus.id.clone(), condition.mean))
+                .collect(),
+            fragility,
+            conditions,
             differences,
             overall_difference,
         })
@@ -143,6 +160,7 @@ impl StudyAnalysis {
         subjects: Vec<String>,
         incomplete: Vec<Incomplete>,
         table: TableAnalysis,
+        fragility: Fragility,
     ) -> Self {
         Self {
             subjects,
@@ -151,6 +169,8 @@ impl StudyAnalysis {
             anova: table.anova.clone(),
             table,
             observers: None,
+            opinions: BTreeMap::new(),
+            fragility,
             differences: Vec::new(),
             overall_difference: None,
         }
@@ -172,6 +192,18 @@ impl StudyAnalysis {
     }
 }
 
+/// What a row says of its image: the rating; of a pair of which both were rated, test less reference.
+pub(crate) fn opinion_score(row: &RatingRow) -> f64 {
+    let reference = row.reference_rating.unwrap_or_default();
+    f64::from(row.rating - reference)
+}
+
+/// The scale of what is analysed; differences of pairs have no ends of their own.
+pub(crate) fn analysed_scale(study: &Study) -> Option<Scale> {
+    let session = &study.protocol.session;
+    (session.layout != Layout::Dscqs).then_some(session.scale)
+}
+
 pub(crate) fn ratings_by_subject(rows: &[RatingRow]) -> BTreeMap<String, SubjectRatings> {
     let mut all: BTreeMap<String, BTreeMap<StimulusId, Vec<f64>>> = BTreeMap::new();
     for row in rows {
@@ -179,7 +211,7 @@ pub(crate) fn ratings_by_subject(rows: &[RatingRow]) -> BTreeMap<String, Subject
         subject
             .entry(row.stimulus_id.clone())
             .or_default()
-            .push(f64::from(row.rating));
+            .push(opinion_score(row));
     }
     let means = |ratings: BTreeMap<StimulusId, Vec<f64>>| {
         (ratings.into_iter())
@@ -254,16 +286,16 @@ fn leave_out_incomplete(groups: &mut [Group]) -> Vec<Incomplete> {
     incomplete
 }
 
-/// Observers as screened by how their ratings agree; `None` with two groups or fewer than three observers.
-fn screening(groups: &[Group], layout: Layout) -> Option<ObserverScreening> {
-    let [Group { images, members }] = groups else {
-        return None;
-    };
+/// Observers as screened by how their ratings agree; `None` with fewer than three observers.
+pub(crate) fn screening(
+    images: &[&StimulusId],
+    members: &BTreeMap<String, SubjectRatings>,
+    layout: Layout,
+) -> Option<ObserverScreening> {
     let ratings: Vec<Vec<Option<f64>>> = (images.iter())
         .map(|image| {
-            members
-                .values()
-                .map(|ratings| ratings.get(&image.id).copied())
+            (members.values())
+                .map(|ratings| ratings.get(*image).copied())
                 .collect()
         })
         .collect();
@@ -280,7 +312,7 @@ fn analysis_as_planned(
     ratings: &StudyRatings,
     groups: &[Group],
     incomplete: &[Incomplete],
-) -> Result<TableAnalysis, InputError> {
+) -> Result<(CellMatrix, TableAnalysis), InputError> {
     let names = StimulusPlan::factors();
     let is_excluded = |factor: &str, level: &str| {
         (plan.exclude.iter()).any(|exclusion| {
@@ -325,12 +357,9 @@ fn analysis_as_planned(
             names.join(", ")
         ));
     }
-    TableAnalysis::new(
-        &cells,
-        &[],
-        plan.sums_of_squares,
-        &AnalysisOptions::planned(plan),
-    )
+    let options = AnalysisOptions::planned(plan);
+    let table = TableAnalysis::new(&cells, &[], plan.sums_of_squares, &options)?;
+    Ok((cells, table))
 }
 
 /// Mean and intervals of every image; each group of subjects has its own normalisation.

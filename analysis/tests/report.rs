@@ -79,10 +79,17 @@ fn every_file_is_written_and_no_other() {
         [
             "anova.csv",
             "anova.json",
+            "asymptotes.csv",
+            "figure-10-outlined.svg",
+            "figure-10.pdf",
             "figure-10.png",
             "figure-10.svg",
+            "follow-ups.csv",
             "means.csv",
-            "report.html"
+            "report.html",
+            "report.md",
+            "tables.tex",
+            "to-paste.txt"
         ]
     );
     // Kept for the eye: target/tmp/report.
@@ -192,13 +199,16 @@ fn means_are_those_of_the_ratings() {
 }
 
 #[test]
-fn the_picture_is_the_figure_at_twice_its_size() {
+fn the_picture_is_the_figure_at_300_dots_an_inch() {
     let trial = Trial::with_people(4);
     trial.report().unwrap();
     let png = fs::read(trial.out().join("figure-10.png")).unwrap();
     assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
     let size = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
-    assert_eq!((size(16), size(20)), (1520, 940));
+    // 7.6 by 4.7 inches; pHYs is in dots a metre.
+    assert_eq!((size(16), size(20)), (2280, 1410));
+    let chunk = png.windows(4).position(|name| name == b"pHYs").unwrap();
+    assert_eq!([size(chunk + 4), size(chunk + 8)], [11_811; 2]);
     let svg = fs::read_to_string(trial.out().join("figure-10.svg")).unwrap();
     // One square or diamond for each of 14 ray counts, and one in the legend.
     assert_eq!(svg.matches("h9v9h-9z").count(), 15);
@@ -490,4 +500,105 @@ fn what_follows_the_table_is_on_the_page_and_in_the_json() {
         assert_eq!(test["n_arrangements"], 4096);
         assert_eq!(test["is_exact"], true);
     }
+}
+
+#[test]
+fn every_format_holds_the_same_numbers() {
+    let trial = Trial::with_people(12);
+    let summary = trial.report().unwrap();
+    let read = |name: &str| fs::read_to_string(trial.out().join(name)).unwrap();
+    let (page, markdown, latex, text) = (
+        trial.page(),
+        read("report.md"),
+        read("tables.tex"),
+        read("to-paste.txt"),
+    );
+    let f = format!("{:.2}", summary.anova.effect("rays").unwrap().f.unwrap());
+    for format in [&page, &markdown, &latex, &text] {
+        assert!(format.contains(&f), "{f}");
+    }
+    // As many tables in each; in LaTeX a row has one sign fewer than columns.
+    let tables = page.matches("<table>").count();
+    assert_eq!(markdown.matches("\n| --- |").count(), tables);
+    assert_eq!(latex.matches("\\caption").count(), tables);
+    assert_eq!(latex.matches('{').count(), latex.matches('}').count());
+    for table in latex.split("\\toprule").skip(1) {
+        let rows = table.split("\\midrule").nth(1).unwrap().lines();
+        let signs = |row: &&str| row.matches(" & ").count();
+        let counts: Vec<usize> = rows
+            .filter(|row| row.ends_with("\\\\"))
+            .map(|row| signs(&row))
+            .collect();
+        assert!(
+            counts.windows(2).all(|pair| pair[0] == pair[1]),
+            "{counts:?}: {table}"
+        );
+    }
+    // The paper's Figure 10 has 10K at the left; 12 subjects, 27 images: 324 trials.
+    assert!(
+        text.contains("In 324 trials 12 frames came late."),
+        "{text}"
+    );
+    assert!(
+        text.contains("F(1, 11)") || text.contains("F(1,\u{a0}11)"),
+        "{text}"
+    );
+    assert!(!text.contains('<') || text.contains("p\u{a0}<"), "{text}");
+    let follow_ups = read("follow-ups.csv");
+    let columns = follow_ups.lines().next().unwrap().split(',').count();
+    // 13 + 2 simple effects, 2 × 12 against the control, 3 trends and their differences.
+    assert_eq!(follow_ups.lines().count(), 1 + 15 + 24 + 6);
+    let mut reader = csv::Reader::from_reader(follow_ups.as_bytes());
+    assert!(
+        reader
+            .records()
+            .all(|record| record.unwrap().len() == columns)
+    );
+    assert_eq!(read("asymptotes.csv").lines().count(), 1 + 2 + 1);
+    assert!(!read("figure-10-outlined.svg").contains("<text"));
+}
+
+#[test]
+fn deviations_are_named_and_their_absence_too() {
+    let trial = Trial::with_people(3);
+    trial.report().unwrap();
+    assert!(
+        trial
+            .page()
+            .contains("every session followed the file that is analysed here")
+    );
+    assert!(trial.page().contains("Sessions: all complete."));
+    let station = |width_mm: f64| {
+        format!(
+            "{{\"operating_system\": \"linux\", \"monitor_px\": [1920, 1080], \"monitor\": \"DP-1\", \
+             \"measured\": {{\"width_mm\": {width_mm}, \"width_px\": 1920, \"distance_cm\": 101.6}}}}"
+        )
+    };
+    let sidecar = |sha256: &str, width_mm: f64, ended: &str| {
+        format!(
+            "{{\"protocol_sha256\": \"{sha256}\", \"acuity_version\": \"1.2.3\", \"sittings\": \
+             [{{\"started_at\": \"x\", \"ended_at\": {ended}, \"focus_losses\": 2, \"station\": {}}}]}}",
+            station(width_mm)
+        )
+    };
+    let write = |subject: &str, text: String| {
+        fs::write(ratings_path(&trial, subject).with_extension("json"), text).unwrap();
+    };
+    let here = trial.study.sha256.to_string();
+    // .336918 mm a pixel is .019 degrees at 101.6 cm (the reference's geometry.py): 646.88 mm for 1920.
+    write("01", sidecar(&here, 646.88, "\"y\""));
+    write("02", sidecar(&"0".repeat(64), 646.88, "null"));
+    write("03", sidecar(&here, 711.57, "\"y\""));
+    trial.report().unwrap();
+    let page = trial.page();
+    for said in [
+        "Protocol: changed.</b> Under another version of the file: subject 02, session 1.",
+        "Cut off (a crash, or the mains):</b> subject 02, session 1.",
+        // 711.57 mm is 10.0% wider.
+        "differed</b> from the 0.019° of the protocol by up to 10.0%",
+        "Program: one version",
+    ] {
+        assert!(page.contains(said), "{said}");
+    }
+    assert!(page.contains("DP-1, 1920 × 1080 pixels, at 101.6 cm, linux"));
 }
