@@ -23,6 +23,8 @@ pub(crate) struct Surface {
     pub(crate) normal: Vector,
     /// Of the mirrored ray.
     pub(crate) mirrored: Vector,
+    /// The shape, if what is sent on from here does not begin inside it.
+    pub(crate) outside_of: Option<u32>,
 }
 
 impl Surface {
@@ -66,15 +68,10 @@ pub(crate) struct Lighting<'scene> {
     fans: Vec<Option<RoundFan>>,
 }
 
-/// How many cells there are along each side of each face of the box round a point light.
-const FAN_SIDE: u32 = 32;
-
 impl<'scene> Lighting<'scene> {
     pub(crate) fn new(scene: &'scene Scene) -> Self {
         let fan = |light: &Light| match light.source {
-            Source::Point { position, .. } => {
-                RoundFan::new(position, FAN_SIDE, scene.shapes.shapes())
-            }
+            Source::Point { position, .. } => RoundFan::new(position, scene.shapes.shapes()),
             Source::Distant { .. } | Source::Area(_) => None,
         };
         Self {
@@ -107,7 +104,7 @@ impl<'scene> Lighting<'scene> {
             source => {
                 let arrival = source.arrival(surface.place);
                 let is_blocked = |ray: &Ray, span| match &self.fans[place] {
-                    Some(fan) => fan.is_blocked(ray, span, shapes.shapes()),
+                    Some(fan) => fan.is_blocked((ray, span), surface.outside_of, shapes.shapes()),
                     None => shapes.is_blocked(ray, span),
                 };
                 lit_from(&arrival, surface, receiver, is_blocked)

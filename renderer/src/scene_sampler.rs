@@ -9,7 +9,7 @@ use arrayvec::ArrayVec;
 use protocols::{Channel, Quadrature};
 
 use crate::band_shader::BandShader;
-use crate::geometry::{Fan, Hit, Ray, Span, Vector};
+use crate::geometry::{Hit, Ray, Span, Vector, ViewFan};
 use crate::lighting::{HitKey, LIFT_M, Lighting, Receiver, Surface};
 use crate::ray_tree::RayTree;
 use crate::sampler::{Sampler, ScreenPoint};
@@ -28,9 +28,6 @@ const MAX_DEPTH: u32 = 8;
 /// No ray tree has more hits; the weaker rays of a hit are the ones left out.
 const MAX_HITS: usize = 32;
 
-/// No more cells along a side of the view.
-const VIEW_CELLS: u32 = 80;
-
 /// A scene, the wavelengths at which it carries light, and the shape of its picture.
 #[derive(Clone, Debug)]
 pub struct SceneSampler<'scene> {
@@ -39,7 +36,7 @@ pub struct SceneSampler<'scene> {
     bands: BandShader,
     lighting: Lighting<'scene>,
     /// What the camera may see where, if that is worth it.
-    view: Option<Fan>,
+    view: Option<ViewFan>,
     aspect: f64,
 }
 
@@ -62,7 +59,6 @@ impl<'scene> SceneSampler<'scene> {
         let [width, height] = size_px.map(f64::from);
         let aspect = width / height;
         let pyramid = scene.camera.pyramid(aspect);
-        let cells = size_px.map(|size| size.clamp(1, VIEW_CELLS));
         let rule = WavelengthRule::new(quadrature);
         let shader = Shader::new(scene, &rule);
         Self {
@@ -70,7 +66,7 @@ impl<'scene> SceneSampler<'scene> {
             bands: BandShader::new(scene, &rule, &shader),
             shader,
             lighting: Lighting::new(scene),
-            view: Fan::new(&pyramid, cells, scene.shapes.shapes()),
+            view: ViewFan::new(&pyramid, scene.shapes.shapes()),
             aspect,
         }
     }
@@ -109,7 +105,8 @@ impl<'scene> SceneSampler<'scene> {
         let outwards = shape.normal(place, hit.part);
         let is_entering = outwards.dot(beam.ray.direction) <= 0.0;
         let smooth = shape.smooth_normal(place, hit.part);
-        let surface = Surface::new(&beam.ray, place, outwards, smooth);
+        let outside_of = (is_entering || !shape.is_closed()).then_some(index);
+        let surface = Surface::new(&beam.ray, place, (outwards, smooth), outside_of);
         if let (Some(light), true) = (material.emission, is_entering) {
             self.see(beam, light, tree);
         }
@@ -265,7 +262,12 @@ impl Surface {
     ///
     /// A smooth normal that cannot be seen from the ray, or that would mirror it into the surface, gives way
     /// to the surface's own.
-    fn new(ray: &Ray, place: Vector, outwards: Vector, smooth: Option<Vector>) -> Self {
+    fn new(
+        ray: &Ray,
+        place: Vector,
+        (outwards, smooth): (Vector, Option<Vector>),
+        outside_of: Option<u32>,
+    ) -> Self {
         let towards_viewer = |normal: Vector| {
             if outwards.dot(ray.direction) > 0.0 {
                 -normal
@@ -283,6 +285,7 @@ impl Surface {
             facing,
             normal,
             mirrored: ray.direction.reflected(normal),
+            outside_of,
         }
     }
 

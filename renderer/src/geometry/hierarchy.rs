@@ -94,3 +94,29 @@ impl Hierarchy {
         walk == Walk::Stop
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::random_shapes::{Stream, by_trying_all, many};
+    use super::*;
+
+    #[test]
+    fn the_hierarchy_finds_what_trying_every_shape_finds() {
+        let mut stream = Stream(3);
+        let shapes = many(&mut stream);
+        let hierarchy = Hierarchy::over(shapes.clone());
+        let mut hits = 0;
+        for _ in 0..20_000 {
+            let ray = stream.ray();
+            let nearest = by_trying_all(&shapes, &ray);
+            let span = Span::up_to(f64::INFINITY);
+            assert_eq!(hierarchy.nearest(&ray, span), nearest);
+            assert_eq!(hierarchy.is_blocked(&ray, span), nearest.is_some());
+            if let Some((_, hit)) = nearest {
+                hits += 1;
+                assert!(!hierarchy.is_blocked(&ray, Span::up_to(hit.distance_m)));
+            }
+        }
+        assert!(hits > 10_000, "only {hits} hits");
+    }
+}

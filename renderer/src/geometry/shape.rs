@@ -2,10 +2,15 @@
 
 use std::sync::Arc;
 
+use arrayvec::ArrayVec;
+
 use super::{
-    Bounds, Cone, Cuboid, Cylinder, Disc, Ground, Hit, Hull, Mesh, Part, Ray, Rectangle, Span,
-    Sphere, SurfacePoint, Vector,
+    Bounds, Cone, Cuboid, Cylinder, Disc, Ground, Hit, Mesh, Part, Ray, Rectangle, Span, Sphere,
+    SurfacePoint, Vector,
 };
+
+/// The balls whose convex hull holds a shape.
+pub(crate) type Hull = ArrayVec<(Vector, f64), 8>;
 
 /// One shape.
 #[derive(Clone, Debug)]
@@ -70,6 +75,11 @@ impl Shape {
     /// Whether the shape encloses a space, as far as can be known: a mesh is believed to.
     pub(crate) const fn is_closed(&self) -> bool {
         !matches!(self, Self::Disc(_) | Self::Rectangle(_))
+    }
+
+    /// Whether no straight line meets it in more than one piece, as far as can be known.
+    pub(crate) const fn is_convex(&self) -> bool {
+        !matches!(self, Self::Mesh(_))
     }
 
     /// The first hit within the span.
@@ -157,36 +167,8 @@ impl Shape {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Fan, Hierarchy, Pyramid, RoundFan};
+    use super::super::random_shapes::{Stream, first_hit};
     use super::*;
-
-    /// A stream of numbers from 0 to 1 that is the same everywhere: Knuth's MMIX generator.
-    struct Stream(u64);
-
-    impl Stream {
-        fn unit(&mut self) -> f64 {
-            let Self(state) = self;
-            *state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (*state >> 11) as f64 / (1_u64 << 53) as f64
-        }
-
-        fn place(&mut self, size_m: f64) -> Vector {
-            let mut coordinate = || size_m * (2.0 * self.unit() - 1.0);
-            Vector::new(coordinate(), coordinate(), coordinate())
-        }
-
-        fn ray(&mut self) -> Ray {
-            let origin = self.place(4.0);
-            let direction = (self.place(1.0) - origin).normalized();
-            Ray { origin, direction }
-        }
-    }
-
-    fn first_hit(shape: &Shape, ray: &Ray) -> Option<Hit> {
-        shape.hit(ray, Span::up_to(f64::INFINITY))
-    }
 
     /// Where a ray first changes between inside and outside, found by small steps and halving.
     fn by_marching(ray: &Ray, is_inside: &dyn Fn(Vector) -> bool) -> Option<f64> {
@@ -327,108 +309,5 @@ mod tests {
         assert!(first_hit(&rectangle, &down(0.999, 0.499)).is_some());
         assert!(first_hit(&rectangle, &down(0.5, 0.501)).is_none());
         assert!(first_hit(&rectangle, &down(-0.001, 0.2)).is_none());
-    }
-
-    /// Six hundred shapes of all kinds over a ground, one of them twice.
-    fn many(stream: &mut Stream) -> Vec<Shape> {
-        let mut shapes = vec![Shape::Ground(Ground { height_m: -1.0 })];
-        for _ in 0..100 {
-            let (one, radius_m) = (stream.place(2.0), 0.02 + 0.2 * stream.unit());
-            let other = one + stream.place(0.5);
-            let turn_deg = 90.0 * stream.unit();
-            let normal = (other - one).normalized();
-            let size = Vector::new(radius_m, 0.1, 0.3);
-            let edges = (Vector::new(radius_m, 0.0, 0.0), Vector::new(0.0, 0.0, 0.2));
-            shapes.extend([
-                Shape::Sphere(Sphere {
-                    center: one,
-                    radius_m,
-                }),
-                Shape::Cuboid(Cuboid::new(one, size, turn_deg)),
-                Shape::Cylinder(Cylinder::between(one, other, 0.1 * radius_m)),
-                Shape::Cone(Cone::between(other, one, radius_m)),
-                Shape::Disc(Disc::new(other, normal, radius_m)),
-                Shape::Rectangle(Rectangle::new(other, edges.0, edges.1)),
-            ]);
-        }
-        // The same rectangle twice: of equal hits the first shape's counts.
-        shapes.push(shapes[6].clone());
-        shapes
-    }
-
-    /// The plain way: every shape in its order.
-    fn by_trying_all(shapes: &[Shape], ray: &Ray) -> Option<(u32, Hit)> {
-        let tried = (0..)
-            .zip(shapes)
-            .filter_map(|(index, shape)| first_hit(shape, ray).map(|hit| (index, hit)));
-        tried.reduce(|best: (u32, Hit), next| {
-            if next.1.distance_m < best.1.distance_m {
-                next
-            } else {
-                best
-            }
-        })
-    }
-
-    #[test]
-    fn a_fan_finds_what_trying_every_shape_finds() {
-        let mut stream = Stream(4);
-        let shapes: Vec<Shape> = many(&mut stream).into_iter().step_by(3).collect();
-        let apex = Vector::new(2.9, -3.1, 2.7);
-        let forward = (Vector::default() - apex).normalized();
-        let right = forward.cross(Vector::UP).normalized();
-        let (right, up) = (right * 0.4, right.cross(forward) * 0.3);
-        let pyramid = Pyramid {
-            apex,
-            forward,
-            right,
-            up,
-        };
-        let fan = Fan::new(&pyramid, [40, 30], &shapes).unwrap();
-        let round = RoundFan::new(apex, 32, &shapes).unwrap();
-        let (mut hits, mut shadows) = (0, 0);
-        for _ in 0..20_000 {
-            let (s, t) = (stream.unit(), stream.unit());
-            let direction = forward + right * (2.0 * s - 1.0) + up * (1.0 - 2.0 * t);
-            let ray = Ray {
-                origin: apex,
-                direction: direction.normalized(),
-            };
-            let nearest = by_trying_all(&shapes, &ray);
-            assert_eq!(fan.nearest((s, t), &ray, &shapes), nearest);
-            hits += u32::from(nearest.is_some());
-            let place = stream.place(3.0);
-            let path = apex - place;
-            let shadow_ray = Ray {
-                origin: place + stream.place(5e-7),
-                direction: path.normalized(),
-            };
-            let span = Span::up_to(path.length());
-            let expected = shapes.iter().any(|shape| shape.is_hit(&shadow_ray, span));
-            assert_eq!(round.is_blocked(&shadow_ray, span, &shapes), expected);
-            shadows += u32::from(expected);
-        }
-        assert!(hits > 2_000, "only {hits} hits");
-        assert!((2_000..18_000).contains(&shadows), "{shadows} shadows");
-    }
-
-    #[test]
-    fn the_hierarchy_finds_what_trying_every_shape_finds() {
-        let mut stream = Stream(3);
-        let shapes = many(&mut stream);
-        let hierarchy = Hierarchy::over(shapes.clone());
-        let mut hits = 0;
-        for _ in 0..20_000 {
-            let ray = stream.ray();
-            let nearest = by_trying_all(&shapes, &ray);
-            let span = Span::up_to(f64::INFINITY);
-            assert_eq!(hierarchy.nearest(&ray, span), nearest);
-            assert_eq!(hierarchy.is_blocked(&ray, span), nearest.is_some());
-            if let Some((_, hit)) = nearest {
-                hits += 1;
-                assert!(!hierarchy.is_blocked(&ray, Span::up_to(hit.distance_m)));
-            }
-        }
-        assert!(hits > 10_000, "only {hits} hits");
     }
 }
