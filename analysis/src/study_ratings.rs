@@ -274,7 +274,7 @@ fn ratings_files(folder: &Path, study: &Study) -> Result<Vec<PathBuf>, AnalysisE
         let path = entry
             .map_err(|error| AnalysisError::from(ReadError::from_io(folder, kind, error)))?
             .path();
-        if file_name(&path).ends_with("_data.csv") {
+        if DataSet::has_ratings(&file_name(&path)) {
             files.push(path);
         }
     }

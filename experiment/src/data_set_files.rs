@@ -24,7 +24,8 @@ pub(crate) fn prepare(
     create_private_folder(&data_set.data_folder())?;
     let path = data_set.description_path();
     if path.exists() {
-        return check(data_set, study, observer);
+        check(data_set, study, observer)?;
+        return describe_new_columns(&path, &description(study, observer));
     }
     if has_entries(&data_set.data_folder())? {
         let remedy = "restore it, or name another folder with --data";
@@ -39,6 +40,31 @@ pub(crate) fn prepare(
     let text = format!("{:#}\n", description(study, observer));
     write_atomically(&path, text.as_bytes(), Access::Owner)
         .map_err(ExperimentError::io("write", &path))
+}
+
+/// Adds the columns that the description lacks, as after a question was added to the protocol's form.
+fn describe_new_columns(path: &Path, present: &Value) -> Result<(), ExperimentError> {
+    let kind = "the description of a data set (JSON)";
+    let text = fs::read_to_string(path).map_err(|error| ReadError::from_io(path, kind, error))?;
+    let mut found: Value = serde_json::from_str(&text)
+        .map_err(|error| InputError::new(path, error.to_string(), kind))?;
+    let wanted = present["variableMeasured"].as_array();
+    let Some(known) = found["variableMeasured"].as_array_mut() else {
+        let expected = "the columns of every table";
+        return Err(InputError::new(path, "no variableMeasured", expected).into());
+    };
+    let before = known.len();
+    for variable in wanted.into_iter().flatten() {
+        if known.iter().all(|old| old["name"] != variable["name"]) {
+            known.push(variable.clone());
+        }
+    }
+    if known.len() == before {
+        return Ok(());
+    }
+    let text = format!("{found:#}\n");
+    write_atomically(path, text.as_bytes(), Access::Owner)
+        .map_err(ExperimentError::io("write", path))
 }
 
 /// Checks that the data set is of this study and of this kind of observer.
@@ -86,8 +112,10 @@ fn description(study: &Study, observer: Observer) -> Value {
             "simulated observers (a model of vision with bias, gain and noise; no person took part)",
         ),
     };
-    let variables: Vec<Value> = columns(&study.protocol.stimuli.factors())
+    let of_ratings = columns(&study.protocol.stimuli.factors());
+    let variables: Vec<Value> = of_ratings
         .into_iter()
+        .chain(crate::intake_files::columns(&study.protocol.session))
         .map(|column| {
             let mut variable = json!({
                 "@type": "PropertyValue",

@@ -17,6 +17,8 @@ mod data_set_files;
 mod error;
 mod frame_clock;
 mod frame_log;
+mod intake;
+mod intake_files;
 mod latin_square;
 mod note;
 mod order;
@@ -45,6 +47,10 @@ pub use button::{Button, Key};
 pub use error::ExperimentError;
 pub use frame_clock::{FrameClock, FrameSummary};
 pub use frame_log::{FrameLog, FrameRun};
+pub use intake::{
+    Axis, AxisScore, ColorPlate, DoneBefore, Finished, Intake, Letter, LetterAnswer, LetterScore,
+    PlateAnswer, PlateImage, Reply, ScreeningScore, Side, Step,
+};
 pub use note::{Note, Noted};
 pub use order::{Trial, trials};
 pub use panel::ObserverPanel;

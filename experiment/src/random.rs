@@ -60,7 +60,7 @@ impl Random {
     }
 
     /// Evenly distributed on (0, 1], in steps of 2^-53.
-    fn uniform(&mut self) -> f64 {
+    pub(crate) fn uniform(&mut self) -> f64 {
         let steps = (self.0.next_u64() >> 11) + 1;
         steps as f64 * 2.0_f64.powi(-53)
     }

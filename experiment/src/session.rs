@@ -137,6 +137,8 @@ pub enum Ending {
     Complete,
     /// The subject stopped; what was rated is kept.
     Stopped,
+    /// The subject did not agree to take part; nothing is kept.
+    Declined,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

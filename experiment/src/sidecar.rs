@@ -11,7 +11,8 @@ use protocols::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::{Ending, ExperimentError, FrameSummary, Refresh, StationFile};
+use crate::intake_files::IntakeRecord;
+use crate::{DoneBefore, Ending, ExperimentError, FrameSummary, Refresh, StationFile};
 
 /// What the times in the ratings are, in the words that the data can bear.
 pub(crate) const TIMING_SOURCE: &str = "Onset and offset are software times after the buffer swap \
@@ -57,6 +58,9 @@ pub(crate) struct Sidecar {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) model: Option<ModelTraits>,
     pub(crate) sittings: Vec<Sitting>,
+    /// Consent, form and screening, where the protocol has them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) intake: Option<IntakeRecord>,
     /// Set when the experimenter closed the session although it is not complete.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) closed: Option<Closed>,
@@ -138,6 +142,7 @@ pub(crate) fn ending_word(ending: Ending) -> String {
     match ending {
         Ending::Complete => "complete".to_owned(),
         Ending::Stopped => "stopped".to_owned(),
+        Ending::Declined => "declined".to_owned(),
     }
 }
 
@@ -159,7 +164,18 @@ impl Sidecar {
             timing_source: timing_source.to_owned(),
             model: None,
             sittings: Vec::new(),
+            intake: None,
             closed: None,
+        }
+    }
+
+    /// Which steps before the first trial are done.
+    pub(crate) fn done_before(&self) -> DoneBefore {
+        let record = self.intake.clone().unwrap_or_default();
+        DoneBefore {
+            has_consent: record.consent_at.is_some(),
+            has_form: record.form_at.is_some(),
+            has_screening: record.screening_at.is_some(),
         }
     }
 

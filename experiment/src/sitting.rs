@@ -8,13 +8,15 @@ use std::path::{Path, PathBuf};
 use jiff::Timestamp;
 use protocols::{Access, DataSet, InputError, Observer, Study, SubjectId, write_atomically};
 
+use crate::intake::PixelAngle;
+use crate::intake_files::IntakeFiles;
 use crate::rating_row::{rating_row, utc};
 use crate::ratings_log::RatingsLog;
 use crate::sidecar::{self, Closed, SessionKey, Sidecar, Station, ending_word};
 use crate::timing_log::TimingLog;
 use crate::{
-    Ending, Event, ExperimentError, Noted, Rules, Session, StationFile, StimulusSet,
-    data_set_files, trials,
+    Ending, Event, ExperimentError, Finished, Intake, Noted, Rules, ScreeningScore, Session,
+    StationFile, StimulusSet, data_set_files, trials,
 };
 
 /// Which session is run, and on what.
@@ -36,12 +38,25 @@ pub struct RunOptions {
     pub pilot: Option<f64>,
 }
 
+impl RunOptions {
+    /// The session of a person, and the data set that it belongs to.
+    fn session_of(&self, study: &Study) -> (SessionKey, DataSet) {
+        let key = SessionKey {
+            subject_id: self.subject.clone(),
+            session_id: self.session,
+            observer: Observer::Person,
+            pilot_speed: self.pilot,
+        };
+        (key, DataSet::new(&self.data_dir, &study.protocol.study))
+    }
+}
+
 /// How a session ended, and where its ratings are.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SessionEnd {
     /// The subject.
     pub subject: SubjectId,
-    /// Complete or stopped.
+    /// Complete, stopped or declined.
     pub ending: Ending,
     /// How many trials are rated, practice included.
     pub rated: usize,
@@ -69,6 +84,10 @@ impl fmt::Display for SessionEnd {
                 formatter,
                 "subject {subject}: stopped after {rated} of {trials} trials, in {path}; the same command goes on from there"
             ),
+            Ending::Declined => write!(
+                formatter,
+                "subject {subject}: did not agree to take part; nothing was kept"
+            ),
         }
     }
 }
@@ -77,6 +96,8 @@ impl fmt::Display for SessionEnd {
 #[derive(Debug)]
 pub(crate) struct Sitting {
     pub(crate) session: Session,
+    /// What comes before the first trial.
+    pub(crate) intake: Intake,
     log: RatingsLog,
     sidecar: Sidecar,
     sidecar_path: PathBuf,
@@ -84,6 +105,7 @@ pub(crate) struct Sitting {
     data_set: DataSet,
     timing: TimingLog,
     exposure_requested_s: f64,
+    pixel_angle: PixelAngle,
     clock_zero: Timestamp,
     is_begun: bool,
 }
@@ -106,13 +128,7 @@ impl Sitting {
         options: &RunOptions,
         clock_zero: Timestamp,
     ) -> Result<Self, ExperimentError> {
-        let key = SessionKey {
-            subject_id: options.subject.clone(),
-            session_id: options.session,
-            observer: Observer::Person,
-            pilot_speed: options.pilot,
-        };
-        let data_set = DataSet::new(&options.data_dir, &study.protocol.study);
+        let (key, data_set) = options.session_of(study);
         data_set_files::prepare(&data_set, study, Observer::Person)?;
         let trials = trials(study, &key.subject_id, key.session_id)?;
         let factors = study.protocol.stimuli.factors();
@@ -129,14 +145,18 @@ impl Sitting {
         let fresh = Sidecar::new(study, set.manifest_sha256(), &key);
         let is_fresh = log.rated() == 0 && !is_closed(&sidecar_path);
         let sidecar = if is_fresh {
-            fresh
+            // What was answered before the first trial stands, if nothing else has changed.
+            Sidecar::read_same_session(&sidecar_path, &fresh).unwrap_or(fresh)
         } else {
             Sidecar::read_same_session(&sidecar_path, &fresh)?
         };
+        let plan = &study.protocol.session;
+        let intake = Intake::new(plan, &key.subject_id, key.session_id, sidecar.done_before());
         let rules = Rules::of(&study.protocol.session).faster(options.pilot.unwrap_or(1.0));
         let timing = TimingLog::beside(&data_set, log.path(), clock_zero)?;
         Ok(Self {
             session: Session::new(trials, log.rated(), rules),
+            intake,
             study: study.clone(),
             data_set,
             timing,
@@ -144,6 +164,7 @@ impl Sitting {
             sidecar,
             sidecar_path,
             exposure_requested_s: study.protocol.session.exposure_s,
+            pixel_angle: pixel_angle(study, options),
             clock_zero,
             is_begun: false,
         })
@@ -163,6 +184,43 @@ impl Sitting {
         });
         self.timing.begin(self.sidecar.sittings.len());
         self.sidecar.write(&self.sidecar_path)
+    }
+
+    /// Puts on disk what was finished before the first trial.
+    pub(crate) fn keep(&mut self, finished: Finished, at_s: f64) -> Result<(), ExperimentError> {
+        let at = utc(self.clock_zero, at_s);
+        let files = IntakeFiles::new(&self.data_set, &self.sidecar.key);
+        let record = self.sidecar.intake.get_or_insert_default();
+        match finished {
+            Finished::Consent(sha256) => {
+                record.consent_sha256 = Some(sha256.to_string());
+                record.consent_at = Some(at);
+            }
+            Finished::Form(answers) => {
+                files.write_form(&self.study.protocol.session.form, &answers)?;
+                record.form_at = Some(at);
+            }
+            Finished::Screening(plates, letters) => {
+                let angle = self.pixel_angle;
+                files.write_screening(&plates, &letters, angle)?;
+                record.screening = Some(ScreeningScore::of(&plates, &letters, angle));
+                record.screening_at = Some(at);
+            }
+        }
+        self.sidecar.write(&self.sidecar_path)
+    }
+
+    /// The subject left before the first trial: without consent nothing is kept.
+    pub(crate) fn leave(&mut self, at_s: f64) -> Result<SessionEnd, ExperimentError> {
+        let has_consent = self.sidecar.done_before().has_consent;
+        if self.study.protocol.session.consent.is_none() || has_consent {
+            return self.finish(Ending::Stopped, 0, at_s);
+        }
+        std::fs::remove_file(&self.sidecar_path)
+            .map_err(ExperimentError::io("remove", &self.sidecar_path))?;
+        // Now no window ever showed the session, and the empty table of ratings goes with it.
+        self.is_begun = false;
+        Ok(self.end(Ending::Declined))
     }
 
     /// Puts the answer that waits, if one does, on disk; only then the session goes on. `now_s` tells the time.
@@ -238,17 +296,30 @@ impl Sitting {
         self.session.note(Noted::Ended, at_s, ending_word(ending));
         self.log_timing()?;
         self.sidecar.write(&self.sidecar_path)?;
-        Ok(SessionEnd {
+        Ok(self.end(ending))
+    }
+
+    fn end(&self, ending: Ending) -> SessionEnd {
+        SessionEnd {
             subject: self.sidecar.key.subject_id.clone(),
             ending,
             rated: self.session.rated(),
             trials: self.session.trials().len(),
             ratings_path: self.ratings_path().to_owned(),
-        })
+        }
     }
 
     pub(crate) fn ratings_path(&self) -> &Path {
         self.log.path()
+    }
+}
+
+/// The angle of a pixel at the station, or where nothing was measured the one that the protocol asks for.
+fn pixel_angle(study: &Study, options: &RunOptions) -> PixelAngle {
+    let measured = options.station.as_ref().map(StationFile::degrees_per_pixel);
+    PixelAngle {
+        degrees: measured.unwrap_or(study.protocol.viewing.degrees_per_pixel),
+        is_measured: measured.is_some(),
     }
 }
 
@@ -269,13 +340,7 @@ pub fn close_session(
     options: &RunOptions,
     reason: &str,
 ) -> Result<SessionEnd, ExperimentError> {
-    let key = SessionKey {
-        subject_id: options.subject.clone(),
-        session_id: options.session,
-        observer: Observer::Person,
-        pilot_speed: options.pilot,
-    };
-    let data_set = DataSet::new(&options.data_dir, &study.protocol.study);
+    let (key, data_set) = options.session_of(study);
     let path = data_set.ratings_path(&key.subject_id, key.session_id, key.task());
     if !path.exists() {
         let found = "no such session";
@@ -311,5 +376,7 @@ pub fn close_session(
 
 #[cfg(test)]
 mod crash;
+#[cfg(test)]
+mod intake_kept;
 #[cfg(test)]
 pub(crate) mod tests;

@@ -26,6 +26,9 @@ impl Observer {
     }
 }
 
+/// The tasks of tables without ratings, of sessions that count and of trial runs.
+const OTHER_TASKS: [&str; 4] = ["form", "screening", "pilotform", "pilotscreening"];
+
 /// The folder of a Psych-DS data set and the names in it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DataSet {
@@ -73,6 +76,17 @@ impl DataSet {
             self.study_key
         );
         self.data_folder().join(name)
+    }
+
+    /// Whether a file of the data folder, by its name, holds ratings.
+    ///
+    /// ```
+    /// assert!(protocols::DataSet::has_ratings("study-a_subject-01_session-1_task-rating_data.csv"));
+    /// assert!(!protocols::DataSet::has_ratings("study-a_subject-01_session-1_task-form_data.csv"));
+    /// ```
+    pub fn has_ratings(file_name: &str) -> bool {
+        let is_of = |task: &str| file_name.ends_with(&format!("_task-{task}_data.csv"));
+        file_name.ends_with("_data.csv") && !OTHER_TASKS.iter().any(|task| is_of(task))
     }
 
     /// The sidecar of a ratings file: the same name, ending in `.json`.

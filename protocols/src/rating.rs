@@ -233,7 +233,8 @@ impl RatingRow {
     }
 }
 
-fn csv_line(fields: impl Iterator<Item = String>) -> String {
+/// Fields as one line of CSV with its line end; a field is quoted where it must be.
+pub fn csv_line(fields: impl Iterator<Item = String>) -> String {
     let quoted = fields.map(|field| {
         if field.contains([',', '"', '\n', '\r']) {
             format!("\"{}\"", field.replace('"', "\"\""))

@@ -9,10 +9,11 @@ use super::clock::Clock;
 use super::gate::{Gate, Sizes};
 use super::geometry::Geometry;
 use super::input;
+use super::intake_page::IntakePage;
 use super::monitor::Monitor;
 use super::paint::{Brush, Pictures};
 use crate::sitting::Sitting;
-use crate::{Event, ExperimentError, Key, Noted, Screen, Session, SessionEnd, StationFile};
+use crate::{Event, ExperimentError, Key, Noted, Screen, Session, SessionEnd, StationFile, Step};
 
 /// What the subject is to see.
 pub(crate) struct Show {
@@ -56,6 +57,7 @@ pub(crate) struct SessionApp {
     before: Before,
     monitor: Monitor,
     focus: Focus,
+    intake_page: IntakePage,
 }
 
 impl SessionApp {
@@ -68,19 +70,25 @@ impl SessionApp {
             before: Before::Sizing(Gate::default()),
             monitor: Monitor::default(),
             focus: Focus::default(),
+            intake_page: IntakePage::default(),
         }
     }
 
     /// One frame; says how the session ended, once it has.
-    fn frame(&mut self, ui: &egui::Ui, now_s: f64) -> Result<Option<SessionEnd>, ExperimentError> {
-        let context = ui.ctx();
+    fn frame(
+        &mut self,
+        ui: &mut egui::Ui,
+        now_s: f64,
+    ) -> Result<Option<SessionEnd>, ExperimentError> {
+        let context = &ui.ctx().clone();
         let sizes = Sizes::of(context);
         let geometry = Geometry {
             size_px: sizes.window_px.map(|pixels| pixels as f32).into(),
             pixels_per_point: sizes.pixels_per_point,
         };
+        let painter = ui.painter().clone();
         let brush = Brush {
-            painter: ui.painter(),
+            painter: &painter,
             geometry,
             plan: &self.show.plan,
             pointer: context.input(|input| input.pointer.latest_pos()),
@@ -96,6 +104,9 @@ impl SessionApp {
             }
         }
 
+        if self.sitting.intake.step() != Step::Done {
+            return self.intake(ui, geometry, now_s);
+        }
         self.focus.note(context, &mut self.sitting.session, now_s);
         let screen = self.sitting.session.screen();
         let mut events = input::events(context, geometry, screen, &self.show.plan);
@@ -108,11 +119,10 @@ impl SessionApp {
             self.sitting.session.on(event, now_s);
             self.sitting.save(|| self.clock.now_s())?;
         }
-        let session = &mut self.sitting.session;
-        if !screen.has_scale() && session.screen().has_scale() {
-            let rest = geometry.pointer_rest(&self.show.plan);
-            context.send_viewport_cmd(ViewportCommand::CursorPosition(rest));
+        if !screen.has_scale() && self.sitting.session.screen().has_scale() {
+            self.rest_pointer(context, geometry);
         }
+        let session = &mut self.sitting.session;
         if let Some(ending) = session.ending() {
             return self
                 .sitting
@@ -129,6 +139,51 @@ impl SessionApp {
         }
         if session.needs_frames() {
             context.request_repaint();
+        }
+        Ok(None)
+    }
+}
+
+impl SessionApp {
+    fn rest_pointer(&self, context: &egui::Context, geometry: Geometry) {
+        let rest = geometry.pointer_rest(&self.show.plan);
+        context.send_viewport_cmd(ViewportCommand::CursorPosition(rest));
+    }
+
+    /// One frame of what comes before the first trial; says how the session ended, if the subject left.
+    fn intake(
+        &mut self,
+        ui: &mut egui::Ui,
+        geometry: Geometry,
+        now_s: f64,
+    ) -> Result<Option<SessionEnd>, ExperimentError> {
+        let context = ui.ctx().clone();
+        if context.input(|input| input.viewport().close_requested()) {
+            context.send_viewport_cmd(ViewportCommand::CancelClose);
+        }
+        let intake = &mut self.sitting.intake;
+        let reply = (self.intake_page).show(ui, geometry, &self.show.plan, intake);
+        intake.shown(now_s);
+        if let Some(reply) = reply {
+            let finished = intake.reply(reply, now_s);
+            let step = intake.step();
+            context.request_repaint();
+            if let Some(finished) = finished {
+                self.sitting.keep(finished, now_s)?;
+            }
+            if step == Step::Left {
+                return self.sitting.leave(now_s).map(Some);
+            }
+        }
+        if let Some(speed) = self.show.pilot {
+            let painter = ui.painter().clone();
+            let brush = Brush {
+                painter: &painter,
+                geometry,
+                plan: &self.show.plan,
+                pointer: None,
+            };
+            brush.pilot(speed);
         }
         Ok(None)
     }

@@ -6,6 +6,7 @@ mod clock;
 mod gate;
 mod geometry;
 mod input;
+mod intake_page;
 mod monitor;
 mod paint;
 mod proof;
