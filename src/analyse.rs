@@ -45,9 +45,7 @@ pub(crate) fn anova(arguments: &AnovaArguments) -> anyhow::Result<()> {
         })?;
         return Ok(());
     }
-    let (Some(table), Some(subject), Some(rating)) =
-        (&arguments.table, &arguments.subject, &arguments.rating)
-    else {
+    let (Some(subject), Some(rating)) = (&arguments.subject, &arguments.rating) else {
         anyhow::bail!("a table, --subject and --rating are needed");
     };
     let design = Design {
@@ -58,8 +56,10 @@ pub(crate) fn anova(arguments: &AnovaArguments) -> anyhow::Result<()> {
         observed: arguments.observed.clone(),
         sums_of_squares: arguments.sums_of_squares.into(),
         missing: arguments.missing.into(),
+        filters: arguments.filters.clone(),
     };
-    let analysis = TableAnalysis::of_table(table, &design, &options(&arguments.beside))?;
+    let analysis =
+        TableAnalysis::of_tables(&arguments.tables, &design, &options(&arguments.beside))?;
     console::print(if arguments.json {
         analysis.to_json()
     } else {

@@ -3,7 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use analysis::{EffectScale, PrintedF};
+use analysis::{EffectScale, PrintedF, RowFilter};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use protocols::{
     Channel, Export, FollowUpPlan, Missing, Observer, Quadrature, RayCount, RefinementDriver,
@@ -387,15 +387,18 @@ pub(crate) struct ReportArguments {
 
 #[derive(Debug, Args)]
 pub(crate) struct AnovaArguments {
-    /// The table: CSV or TSV with a header line, one rating a row.
-    #[arg(required_unless_present = "explain")]
-    pub(crate) table: Option<PathBuf>,
-    /// Column that names the subject.
+    /// The table: CSV or TSV with a header line, one rating a row. Several files, such as one for each subject, are one table.
+    #[arg(value_name = "TABLE", required_unless_present = "explain")]
+    pub(crate) tables: Vec<PathBuf>,
+    /// Column that names the subject; @sub takes it from files named sub-01_..., as BIDS has them.
     #[arg(long, value_name = "COLUMN", required_unless_present = "explain")]
     pub(crate) subject: Option<String>,
-    /// Column with the rating.
+    /// Column with the rating; COLUMN.KEY for a number in a JSON object, as jsPsych's surveys have it.
     #[arg(long, value_name = "COLUMN", required_unless_present = "explain")]
     pub(crate) rating: Option<String>,
+    /// Only rows whose field is this value (or one of VALUE|VALUE), or with != is not. May be repeated.
+    #[arg(long = "where", value_name = "COLUMN=VALUE")]
+    pub(crate) filters: Vec<RowFilter>,
     /// Columns of the factors of which every subject has seen every level.
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',')]
     pub(crate) within: Vec<String>,
@@ -414,7 +417,7 @@ pub(crate) struct AnovaArguments {
     #[command(flatten)]
     pub(crate) beside: BesideAnova,
     /// Say which designs a printed F value allows, such as "F(12,120)=51.44", and stop.
-    #[arg(long, value_name = "F", conflicts_with_all = ["table", "subject", "rating"])]
+    #[arg(long, value_name = "F", conflicts_with_all = ["tables", "subject", "rating"])]
     pub(crate) explain: Option<PrintedF>,
     /// Print JSON.
     #[arg(long)]

@@ -4,12 +4,14 @@ use std::path::Path;
 
 use protocols::{InputError, Missing, SumsOfSquares};
 
+use crate::RowFilter;
+
 /// The roles of a table's columns in an analysis of variance.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Design {
-    /// The column that says who rated.
+    /// The column that says who rated, or `@` and an entity of the files' names, such as `@sub`.
     pub subject: String,
-    /// The column of the measured values.
+    /// The column of the measured values; `COLUMN.KEY` for a number in a JSON object.
     pub rating: String,
     /// The factors of which every subject has every level.
     pub within: Vec<String>,
@@ -21,6 +23,8 @@ pub struct Design {
     pub sums_of_squares: SumsOfSquares,
     /// What is done with a subject of whom a rating is missing.
     pub missing: Missing,
+    /// Which rows are ratings: those that every filter keeps.
+    pub filters: Vec<RowFilter>,
 }
 
 impl Design {

@@ -83,17 +83,17 @@ impl Default for AnalysisOptions {
 }
 
 impl TableAnalysis {
-    /// Analyses a table in a file.
+    /// Analyses a table in a file, or in several.
     ///
     /// # Errors
     ///
     /// As [`crate::anova_of_table`], and follow-ups of factors or levels that the table does not have.
-    pub fn of_table(
-        path: &Path,
+    pub fn of_tables(
+        paths: &[impl AsRef<Path>],
         design: &Design,
         options: &AnalysisOptions,
     ) -> Result<Self, AnalysisError> {
-        let observations = read_observations(path, design)?;
+        let observations = read_observations(paths, design)?;
         let cells = CellMatrix::with_missing(&observations, design.missing)?;
         let table = Self::new(&cells, &design.observed, design.sums_of_squares, options)?;
         Ok(table)

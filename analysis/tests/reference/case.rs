@@ -40,11 +40,12 @@ impl Case {
             observed: names("observed"),
             sums_of_squares: SumsOfSquares::TypeThree,
             missing: Missing::Drop,
+            filters: Vec::new(),
         }
     }
 
     pub(crate) fn cells(&self) -> CellMatrix {
-        let observations = read_observations(&self.table, &self.design()).unwrap();
+        let observations = read_observations(&[&self.table], &self.design()).unwrap();
         CellMatrix::new(&observations).unwrap()
     }
 
