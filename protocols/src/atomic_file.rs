@@ -29,10 +29,20 @@ impl Access {
 ///
 /// Any error of creating, writing, syncing or renaming; the old file then stands untouched.
 pub fn write_atomically(path: &Path, bytes: &[u8], access: Access) -> io::Result<()> {
-    let folder = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
+    write_unsettled(path, bytes, access)?;
+    settle_names(folder_of(path))
+}
+
+/// Writes `bytes` to `path`; a reader sees the old file or the whole new one.
+///
+/// After a power cut the name may stand for either, until [`settle_names`] was called for the folder: once, after
+/// many files.
+///
+/// # Errors
+///
+/// As for [`write_atomically`].
+pub fn write_unsettled(path: &Path, bytes: &[u8], access: Access) -> io::Result<()> {
+    let folder = folder_of(path);
     fs::create_dir_all(folder)?;
     let mut temporary = tempfile::Builder::new()
         .prefix(".writing-")
@@ -41,7 +51,23 @@ pub fn write_atomically(path: &Path, bytes: &[u8], access: Access) -> io::Result
     temporary.write_all(bytes)?;
     temporary.as_file().sync_all()?;
     temporary.persist(path).map_err(|error| error.error)?;
+    Ok(())
+}
+
+/// Makes the names in a folder outlast a power cut.
+///
+/// # Errors
+///
+/// Any error of opening or syncing the folder.
+pub fn settle_names(folder: &Path) -> io::Result<()> {
     File::open(folder)?.sync_all()
+}
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
 }
 
 #[cfg(test)]

@@ -48,7 +48,7 @@ pub use acuity::Acuity;
 pub use analysis_plan::{
     AnalysisPlan, AsymptotePlan, Correction, Exclusion, Missing, PublishedEffect, SumsOfSquares,
 };
-pub use atomic_file::{Access, write_atomically};
+pub use atomic_file::{Access, settle_names, write_atomically, write_unsettled};
 pub use break_plan::{BreakPlan, InstructionPage};
 pub use channel::{Channel, ChannelGroup, PerChannel};
 pub use data_set::{DataSet, Observer};

@@ -74,6 +74,7 @@ pub fn xyz_from_ac1c2(ac1c2: PerChannel<f64>) -> [f64; 3] {
 ///     assert!((primary - 1.0).abs() < 1e-12);
 /// }
 /// ```
+#[inline]
 pub fn linear_srgb_from_ac1c2(ac1c2: PerChannel<f64>) -> [f64; 3] {
     matrix3::times(&LINEAR_SRGB_FROM_AC1C2, [ac1c2.a, ac1c2.c1, ac1c2.c2])
 }

@@ -14,7 +14,8 @@ use clock::least_secs;
 use protocols::{Channel, PerChannel, Quadrature, RefinementDriver};
 use rayon::ThreadPoolBuilder;
 use renderer::{
-    RayTree, Reach, RendererError, Sampler as _, Scene, ScreenTree, TracePlan, reconstruct, trace,
+    Cell, RayTree, Reach, RendererError, Sampler as _, Scene, ScreenTree, TracePlan, Wanted,
+    snapshots, trace,
 };
 
 const SIZE_PX: [u32; 2] = [320, 320];
@@ -116,12 +117,12 @@ fn measure_reconstruction(scene: &Scene) {
     let sampler = scene.sampler(Quadrature::Bands(16), SIZE_PX);
     let tree: ScreenTree = trace(&sampler, &plan(), &|_, _| ());
     let filter = |stop: Stop| {
+        let wanted = PerChannel::from_fn(|channel| Wanted {
+            rays: [rays(channel, stop)].into(),
+            depth: Cell::DEEPEST,
+        });
         least_secs(ROUNDS, || {
-            for channel in Channel::ALL {
-                let reach = Reach::rays(rays(channel, stop));
-                let leaves = tree.leaves(channel, reach).unwrap_or_default();
-                black_box(reconstruct(&leaves, SIZE_PX));
-            }
+            black_box(snapshots(&tree, &wanted, SIZE_PX));
         })
     };
     let (full, stopped) = (filter(Stop::Never), filter(Stop::Early));

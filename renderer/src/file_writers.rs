@@ -8,7 +8,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-use protocols::{Access, write_atomically};
+use protocols::{Access, settle_names, write_unsettled};
 
 use crate::error::RendererError;
 
@@ -27,9 +27,9 @@ pub(crate) fn writers_for(size_px: [u32; 2]) -> u64 {
     (MOST_BYTES / bytes.max(1)).clamp(1, MOST_WRITERS)
 }
 
-/// Calls `work` with a way to hand over files, and waits until all of them are written; `out` is only named in errors.
+/// Calls `work` with a way to hand over files of the folder `out`, and waits until all of them are written.
 ///
-/// `written` is called after each handing over is on the disk. Files that nobody is free for wait with those who
+/// `written` is called when what was handed over stands in the folder; with all of it, the names are settled. Files that nobody is free for wait with those who
 /// made them, so that no more are held in memory than there are writers.
 ///
 /// # Errors
@@ -66,7 +66,10 @@ pub(crate) fn while_writing<T>(
                     .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
             })
             .collect();
-        made.and_then(|made| outcomes.map(|_| made))
+        let made = made?;
+        outcomes?;
+        settle_names(out).map_err(|error| RendererError::writing(out, error))?;
+        Ok(made)
     })
 }
 
@@ -83,7 +86,7 @@ fn write_received(
     while let Ok(files) = next() {
         if outcome.is_ok() {
             outcome = files.iter().try_for_each(|(path, bytes)| {
-                write_atomically(path, bytes, Access::Ordinary)
+                write_unsettled(path, bytes, Access::Ordinary)
                     .map_err(|error| RendererError::writing(path, error))
             });
         }
@@ -130,12 +133,17 @@ mod tests {
         let path = folder.path().join("taken");
         fs::create_dir(&path).unwrap();
         fs::write(path.join("inside"), "old").unwrap();
-        let outcome = while_writing(2, &path, &|| unreachable!("nothing is written"), |sender| {
-            for _ in 0..9 {
-                sender.send(vec![(path.clone(), vec![1])]).unwrap();
-            }
-            Ok(())
-        });
+        let outcome = while_writing(
+            2,
+            folder.path(),
+            &|| unreachable!("nothing is written"),
+            |sender| {
+                for _ in 0..9 {
+                    sender.send(vec![(path.clone(), vec![1])]).unwrap();
+                }
+                Ok(())
+            },
+        );
         assert!(
             matches!(outcome, Err(RendererError::Io { .. })),
             "{outcome:?}"

@@ -68,20 +68,18 @@ impl SrgbEncoder {
     pub fn encode(&self, channels: PerChannel<&ChannelImage>) -> SrgbImage {
         let PerChannel { a, c1, c2 } = channels;
         let mut bytes = vec![0; 3 * a.values().len()];
+        let mut strip = Strip::default();
         let mut out_of_gamut_px = 0;
-        let [least, greatest] = self.gamut;
-        let values = a.values().iter().zip(c1.values()).zip(c2.values());
-        for (((&a, &c1), &c2), codes) in values.zip(bytes.as_chunks_mut::<3>().0) {
-            let linear = linear_srgb_from_ac1c2(PerChannel {
-                a: f64::from(a),
-                c1: f64::from(c1),
-                c2: f64::from(c2),
-            });
-            let is_shown = linear
-                .iter()
-                .all(|primary| (least..=greatest).contains(primary));
-            out_of_gamut_px += u32::from(!is_shown);
-            *codes = linear.map(|primary| self.code(primary));
+        let [a, c1, c2] = [a, c1, c2].map(|channel| channel.values().chunks(STRIP_PX));
+        for (((a, c1), c2), codes) in a.zip(c1).zip(c2).zip(bytes.chunks_mut(3 * STRIP_PX)) {
+            strip.set(a, c1, c2);
+            out_of_gamut_px += strip.out_of_gamut_px(a.len(), self.gamut);
+            strip.find_parts();
+            for (pixel, codes) in codes.as_chunks_mut::<3>().0.iter_mut().enumerate() {
+                for (primary, code) in codes.iter_mut().enumerate() {
+                    *code = self.code(strip.linear[primary][pixel], strip.parts[primary][pixel]);
+                }
+            }
         }
         SrgbImage {
             size_px: channels.a.size_px(),
@@ -90,16 +88,74 @@ impl SrgbEncoder {
         }
     }
 
-    fn code(&self, linear: f64) -> u8 {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "rounded down on purpose, from 0 to PARTS after the clamp; not-a-number becomes 0"
-        )]
-        let part = (linear.clamp(0.0, 1.0) * PARTS as f64) as usize;
+    /// The code of a linear primary that lies in this part.
+    fn code(&self, linear: f64, part: i32) -> u8 {
+        let part = usize::try_from(part).unwrap_or(0).min(PARTS);
         let code = self.codes[part];
         code + u8::from(self.steps[usize::from(code)] <= linear)
     }
+}
+
+/// Pixels that are worked on at a time, step by step, so that each step is done for several pixels at once.
+const STRIP_PX: usize = 64;
+
+/// Some pixels on their way to codes.
+struct Strip {
+    /// Red, green and blue.
+    linear: [[f64; STRIP_PX]; 3],
+    /// In which of [`PARTS`] each of them lies.
+    parts: [[i32; STRIP_PX]; 3],
+}
+
+impl Default for Strip {
+    fn default() -> Self {
+        Self {
+            linear: [[0.0; STRIP_PX]; 3],
+            parts: [[0; STRIP_PX]; 3],
+        }
+    }
+}
+
+impl Strip {
+    /// The linear primaries of as many pixels as there are.
+    fn set(&mut self, a: &[f32], c1: &[f32], c2: &[f32]) {
+        let [red, green, blue] = &mut self.linear;
+        let linear = red.iter_mut().zip(green).zip(blue);
+        for ((((red, green), blue), (&a, &c1)), &c2) in linear.zip(a.iter().zip(c1)).zip(c2) {
+            [*red, *green, *blue] = linear_srgb_from_ac1c2(PerChannel {
+                a: f64::from(a),
+                c1: f64::from(c1),
+                c2: f64::from(c2),
+            });
+        }
+    }
+
+    /// How many of the first pixels have a primary outside of these limits.
+    fn out_of_gamut_px(&self, pixels: usize, [least, greatest]: [f64; 2]) -> u32 {
+        let [red, green, blue] = &self.linear;
+        let linear = red.iter().zip(green).zip(blue).take(pixels);
+        let is_shown = |primary: &f64| (least..=greatest).contains(primary);
+        let count =
+            |((red, green), blue)| u32::from(!(is_shown(red) & is_shown(green) & is_shown(blue)));
+        linear.map(count).sum()
+    }
+
+    fn find_parts(&mut self) {
+        for (linear, parts) in self.linear.iter().zip(&mut self.parts) {
+            for (linear, part) in linear.iter().zip(parts) {
+                *part = part_of(*linear);
+            }
+        }
+    }
+}
+
+fn part_of(linear: f64) -> i32 {
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "rounded down on purpose, from 0 to PARTS after the clamp"
+    )]
+    let part = (linear.clamp(0.0, 1.0) * PARTS as f64) as i32;
+    part
 }
 
 impl Default for SrgbEncoder {
@@ -155,7 +211,8 @@ mod tests {
         for place in -20_000..=120_000 {
             // A step that meets no code boundary exactly, over and beyond the whole range.
             let linear = f64::from(place) * 1.000_013e-5;
-            assert_eq!(encoder.code(linear), srgb_encode(linear), "{linear}");
+            let code = encoder.code(linear, part_of(linear));
+            assert_eq!(code, srgb_encode(linear), "{linear}");
         }
     }
 
