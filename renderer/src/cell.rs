@@ -12,7 +12,8 @@ use rand::Rng as _;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng as _;
 
-use crate::sampler::ScreenPoint;
+use crate::chacha;
+use crate::sampler::{GridPoint, ScreenPoint};
 
 /// A rectangle that halving the screen leads to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -22,9 +23,10 @@ pub struct Cell {
 }
 
 /// An axis of the screen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Axis {
     /// From left to right.
+    #[default]
     X,
     /// From top to bottom.
     Y,
@@ -53,6 +55,19 @@ impl Cell {
     /// No cell is halved at this depth: on a square picture its side is then 2⁻²⁴ of the screen, and on a picture
     /// one of whose sides is 2¹⁴ times the other no less than 2⁻³¹.
     pub const DEEPEST: u32 = 48;
+
+    /// The cell of so many halvings along x and along y that holds a point.
+    pub(crate) fn holding(GridPoint([x, y]): GridPoint, halvings: [u8; 2]) -> Self {
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "a number of at most 31 halvings has at most 32 bits"
+        )]
+        let number = |step, halvings| (((1 << 32) | u64::from(step)) >> (32 - halvings)) as u32;
+        Self {
+            x: number(x, halvings[0]),
+            y: number(y, halvings[1]),
+        }
+    }
 
     /// How many halvings lead here: 0 for the whole screen.
     pub const fn depth(self) -> u32 {
@@ -149,18 +164,22 @@ impl Cell {
         usize::from(is_second)
     }
 
-    /// Where the sample of a new cell is taken, a function of the seed and the cell alone.
+    /// Where the samples of four new cells are taken, each a function of the seed and its cell alone.
     ///
     /// Uniform within [`JITTER`] of the width and of the height around the middle: an edge that cuts off a
     /// part `p` of a cell is missed by `p (1 - p)` on average by a uniform point and by `min(p, 1 - p)²`, half
     /// of that, by the middle, which however errs in the same way in every cell along the edge.
-    pub(crate) fn sample_point(self, seed: u64) -> ScreenPoint {
-        let ScreenPoint { x, y } = self.random_point(seed);
-        let middle = self.rectangle().middle();
-        ScreenPoint {
-            x: middle.x + JITTER * (x - middle.x),
-            y: middle.y + JITTER * (y - middle.y),
-        }
+    pub(crate) fn sample_points(cells: [Self; 4], seed: u64) -> [ScreenPoint; 4] {
+        let numbers = chacha::first_numbers(seed, cells.map(Self::stream));
+        std::array::from_fn(|place| {
+            let rectangle = cells[place].rectangle();
+            let ScreenPoint { x, y } = rectangle.point(numbers[place]);
+            let middle = rectangle.middle();
+            ScreenPoint {
+                x: middle.x + JITTER * (x - middle.x),
+                y: middle.y + JITTER * (y - middle.y),
+            }
+        })
     }
 
     /// The uniform random point of this cell, a function of the seed and the cell alone.
@@ -170,13 +189,14 @@ impl Cell {
         let mut key = [0; 32];
         key[..8].copy_from_slice(&seed.to_le_bytes());
         let mut random = ChaCha8Rng::from_seed(key);
-        random.set_stream((u64::from(self.x) << 32) | u64::from(self.y));
-        let mut fraction = || (random.next_u64() >> 11) as f64 * half_to_the(53);
-        let rectangle = self.rectangle();
-        ScreenPoint {
-            x: rectangle.left + rectangle.width * fraction(),
-            y: rectangle.top + rectangle.height * fraction(),
-        }
+        random.set_stream(self.stream());
+        self.rectangle()
+            .point([random.next_u64(), random.next_u64()])
+    }
+
+    /// The number of the stream of this cell's random numbers.
+    fn stream(self) -> u64 {
+        (u64::from(self.x) << 32) | u64::from(self.y)
     }
 }
 
@@ -184,6 +204,15 @@ impl Rectangle {
     /// Its share of the screen.
     pub fn area(&self) -> f64 {
         self.width * self.height
+    }
+
+    /// The point at two fractions of the width and the height, the upper 53 bits of two numbers.
+    fn point(&self, numbers: [u64; 2]) -> ScreenPoint {
+        let [x, y] = numbers.map(|number| (number >> 11) as f64 * half_to_the(53));
+        ScreenPoint {
+            x: self.left + self.width * x,
+            y: self.top + self.height * y,
+        }
     }
 
     fn middle(&self) -> ScreenPoint {
@@ -303,12 +332,24 @@ mod tests {
     fn a_random_point_lies_in_its_cell_and_in_the_half_that_is_named() {
         for number in 0..2000 {
             let (cell, _) = descend([640, 480], (number % 48) as u32, choices(number));
-            for point in [cell.random_point(7), cell.sample_point(7)] {
+            for point in [cell.random_point(7), Cell::sample_points([cell; 4], 7)[0]] {
                 for axis in [Axis::X, Axis::Y] {
                     let half = cell.halves(axis)[cell.half_of(point, axis)].rectangle();
                     assert!((half.left..half.left + half.width).contains(&point.x));
                     assert!((half.top..half.top + half.height).contains(&point.y));
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn a_sample_lies_where_its_random_point_does_but_nearer_to_the_middle() {
+        for number in 0..500 {
+            let cells = [0, 1, 2, 3].map(|lane| descend([8, 8], 23, choices(4 * number + lane)).0);
+            for (cell, sample) in cells.into_iter().zip(Cell::sample_points(cells, 1992)) {
+                let (point, middle) = (cell.random_point(1992), cell.rectangle().middle());
+                assert_eq!(sample.x, middle.x + 0.7 * (point.x - middle.x));
+                assert_eq!(sample.y, middle.y + 0.7 * (point.y - middle.y));
             }
         }
     }

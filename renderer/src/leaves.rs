@@ -9,80 +9,86 @@
 //! A leaf is halved along the axis on which that neighbour lies that leads to expect the most, unless it is
 //! longer along the other.
 //!
+//! The leaves of a round look around when all of them are split: what they find does not depend on their order,
+//! and a round that the last ray cuts short need not look at all.
+//!
 //! A round is the sixteenth of all leaves that has the highest [priority](crate::priority); while there are
 //! leaves above the minimum depth, those and no others. Priorities are held in classes, eight to an octave;
 //! within a class the older leaf comes first. A round depends on the leaves alone, and within it the order is
 //! fixed, so that a tree that ends within a round is the beginning of the one that goes on.
 
+use arrayvec::ArrayVec;
+use protocols::{Channel, PerChannel, RefinementDriver};
+
 use crate::cell::{Axis, Cell};
-use crate::confidence::{Confidence, Regions};
-use crate::leaf_map::{LeafMap, Neighbour};
-use crate::priority::{CLASSES, DUE, NEVER, PriorityRule, expected_variances};
-use crate::sampler::ScreenPoint;
-use crate::screen_tree::PlacedNode;
+use crate::confidence::Regions;
+use crate::expected::{Expected, expected_variances, share};
+use crate::grid_cell::GridCell;
+use crate::leaf_map::LeafMap;
+use crate::priority::{CLASSES, DUE, NEVER, PriorityRule};
+use crate::refine::TracePlan;
+use crate::round::round;
+use crate::sampler::GridPoint;
+use crate::screen_tree::{NewSample, Split};
 
 /// One leaf in this many is split in a round.
 const SHARE: usize = 16;
+
+/// This many halves look around at once.
+const AT_ONCE: usize = 64;
 
 /// How much of the variance that is expected in a leaf is expected in its halves, where the map is too coarse to
 /// show them.
 const INHERITED: f32 = 0.6;
 
-/// What is known of the samples, by number.
-pub(crate) trait Samples {
-    /// Where it was taken.
-    fn point(&self, sample: u32) -> ScreenPoint;
-
-    /// The variance of two samples, `(x1 - x2)² / 2`.
-    fn variance(&self, one: u32, other: u32) -> f32;
-
-    /// The same in the channel whose means are to be known.
-    fn doubt(&self, one: u32, other: u32) -> f32;
+/// What a neighbour asks of a leaf, in a quarter of a cache line.
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    /// Where its sample lies.
+    point: GridPoint,
+    /// What was found there of A, as far as it can be shown; NaN if it was not shaded.
+    shown: f32,
+    expected: Expected,
 }
 
-/// The variance that a neighbour leads to expect in a leaf, and the axis on which that neighbour lies.
-///
-/// One number: negative along y.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Expected(f32);
-
-impl Expected {
-    const fn variance(self) -> f32 {
-        self.0.abs()
-    }
-
-    const fn axis(self) -> Axis {
-        if self.0.is_sign_negative() {
-            Axis::Y
-        } else {
-            Axis::X
-        }
-    }
-
-    /// The larger variance with its axis; the earlier one if they are equal.
-    fn raise(&mut self, variance: f32, axis: Axis) {
-        if variance > self.variance() {
-            self.0 = match axis {
-                Axis::X => variance,
-                Axis::Y => -variance,
-            };
-        }
-    }
+/// What else is kept of a leaf.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    /// Of its priority.
+    class: u16,
+    /// Along x and along y; with the point they are the cell.
+    halvings: [u8; 2],
 }
 
-/// A leaf that is to be split along an axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Split {
-    pub(crate) leaf: PlacedNode,
-    pub(crate) axis: Axis,
+/// A leaf that was split in this round: it kept its sample, and half of its cell.
+#[derive(Clone, Copy, Debug)]
+struct Halved {
+    old: u32,
+    /// The sample in the other half.
+    new: u32,
+    /// Of the whole.
+    expected: Expected,
 }
 
-impl Split {
-    /// The half in which the leaf's sample does not lie, which needs a new one.
-    pub(crate) fn free_half(&self, sample: ScreenPoint) -> Cell {
-        let Self { leaf, axis } = *self;
-        leaf.cell.halves(axis)[1 - leaf.cell.half_of(sample, axis)]
-    }
+/// A leaf that looks around.
+#[derive(Clone, Copy, Debug)]
+struct Half {
+    own: u32,
+    cell: GridCell,
+    /// The leaves beyond its sides; itself where there is none.
+    around: [u32; 4],
+}
+
+/// The axes on which the neighbours lie.
+const SIDES: [Axis; 4] = [Axis::X, Axis::X, Axis::Y, Axis::Y];
+
+/// What a leaf and a neighbour lead to expect in each other.
+#[derive(Clone, Copy, Debug)]
+struct Meeting {
+    here: Expected,
+    there: Expected,
+    /// The part of the way between the samples that lies here.
+    share: f32,
 }
 
 /// The leaves of a tree.
@@ -90,189 +96,338 @@ impl Split {
 pub(crate) struct Leaves {
     rule: PriorityRule,
     size_px: [u32; 2],
-    cells: Vec<Cell>,
+    known: Vec<Known>,
+    places: Vec<Place>,
     nodes: Vec<u32>,
-    expected: Vec<Expected>,
+    /// How many leaves there are of each class.
+    counts: Vec<usize>,
     map: LeafMap,
-    /// What is known of the screen, if the run is to end by it.
-    regions: Option<Regions>,
-    /// The variance to be expected in each leaf in the channel whose means are to be known.
-    doubts: Vec<Expected>,
+    /// The leaves that were split since all looked around.
+    halved: Vec<Halved>,
+    colours: Option<Colours>,
+    doubts: Option<Doubts>,
+}
+
+/// What was found of C1 and C2, if it matters; NaN where they were not shaded.
+#[derive(Debug)]
+struct Colours {
+    are_drivers: bool,
+    shown: Vec<[f32; 2]>,
+}
+
+/// What is not known well enough, if the run is to end by that.
+#[derive(Debug)]
+struct Doubts {
+    channel: Channel,
+    regions: Regions,
+    /// The variance to be expected in each leaf in the channel.
+    variances: Vec<f32>,
 }
 
 impl Leaves {
-    /// The one leaf of a tree of one sample; if the run is to end by `confidence`, known regions rest.
-    pub(crate) fn new(
-        rule: PriorityRule,
-        size_px: [u32; 2],
-        confidence: Option<Confidence>,
-    ) -> Self {
-        let regions = confidence.map(|confidence| Regions::new(confidence, size_px));
-        Self {
-            doubts: regions.iter().map(|_| Expected::default()).collect(),
-            regions,
-            rule,
-            size_px,
-            cells: vec![PlacedNode::ROOT.cell],
-            nodes: vec![PlacedNode::ROOT.index],
-            expected: vec![Expected::default()],
-            map: LeafMap::new(size_px),
+    /// The one leaf of a tree of one sample.
+    pub(crate) fn new(plan: &TracePlan, first: &NewSample) -> Self {
+        let are_drivers = plan.driver == RefinementDriver::All;
+        let is_asked = plan.until.is_some_and(|until| until.channel != Channel::A);
+        let mut leaves = Self {
+            rule: plan.priority_rule(),
+            size_px: plan.size_px,
+            known: Vec::with_capacity(plan.rays()),
+            places: Vec::with_capacity(plan.rays()),
+            nodes: Vec::with_capacity(plan.rays()),
+            counts: vec![0; CLASSES],
+            map: LeafMap::new(plan.size_px),
+            halved: Vec::new(),
+            colours: (are_drivers || is_asked).then(|| Colours {
+                are_drivers,
+                shown: Vec::new(),
+            }),
+            doubts: plan.until.map(|until| Doubts {
+                channel: until.channel,
+                regions: Regions::new(until, plan.size_px),
+                variances: Vec::new(),
+            }),
+        };
+        leaves.push(first, [0, 0], 0);
+        leaves.classify(0);
+        leaves
+    }
+
+    fn push(&mut self, new: &NewSample, halvings: [u8; 2], node: u32) {
+        let shown = PerChannel::from_fn(|channel| shown(new.values[channel]));
+        self.known.push(Known {
+            point: new.point,
+            shown: shown.a,
+            expected: Expected::NOTHING,
+        });
+        self.places.push(Place {
+            class: NEVER,
+            halvings,
+        });
+        self.counts[usize::from(NEVER)] += 1;
+        self.nodes.push(node);
+        if let Some(colours) = &mut self.colours {
+            colours.shown.push([shown.c1, shown.c2]);
         }
+        if let Some(doubts) = &mut self.doubts {
+            doubts.variances.push(0.0);
+        }
+    }
+
+    fn cell(&self, leaf: u32) -> GridCell {
+        let leaf = leaf as usize;
+        GridCell::holding(self.known[leaf].point, self.places[leaf].halvings)
     }
 
     /// The leaves of the next round, in its order; none if no leaf may be split.
-    pub(crate) fn next_round(&mut self) -> Vec<Split> {
-        self.refine_map();
-        self.learn_regions();
-        let mut counts = vec![0_usize; CLASSES];
-        for class in self.classes() {
-            counts[class] += 1;
+    pub(crate) fn next_round(&mut self) -> Vec<u32> {
+        if self.map.resize(self.known.len()) {
+            for leaf in 0..as_number(self.known.len()) {
+                self.map.enter(leaf, self.cell(leaf));
+            }
         }
-        counts[NEVER] = 0;
-        let wanted = match counts[DUE] {
-            0 => (self.cells.len() / SHARE).max(1),
+        let wanted = match self.counts[usize::from(DUE)] {
+            0 => (self.known.len() / SHARE).max(1),
             due => due,
         };
-        // Where each class begins in the round, the highest first; the lowest may be cut short.
-        let mut end = 0;
-        let mut lowest = DUE;
-        for class in (0..=DUE).rev() {
-            let count = std::mem::replace(&mut counts[class], end);
-            if end < wanted && count > 0 {
-                lowest = class;
-                end += count;
-            }
+        if self.doubts.is_none() {
+            let classes = self.places.iter().map(|place| place.class);
+            return round(classes, &self.counts, wanted);
         }
-        let mut round = vec![0; end];
-        for (leaf, class) in (0_u32..).zip(self.classes()) {
-            if class >= lowest && class != NEVER {
-                round[counts[class]] = leaf;
-                counts[class] += 1;
-            }
+        let unknown = self.learn();
+        let classes = self.places.iter().map(|place| place.class);
+        let classes = classes.zip(unknown).map(|(class, is_unknown)| {
+            let rests = !is_unknown && class != DUE;
+            if rests { NEVER } else { class }
+        });
+        let classes: Vec<u16> = classes.collect();
+        let mut counts = vec![0; CLASSES];
+        for &class in &classes {
+            counts[usize::from(class)] += 1;
         }
-        round.truncate(wanted);
-        round.into_iter().map(|leaf| self.split_of(leaf)).collect()
+        round(classes.into_iter(), &counts, wanted)
     }
 
-    /// The two halves of a leaf that was split take its place and look at what lies around them.
-    pub(crate) fn split(&mut self, children: [PlacedNode; 2], samples: &impl Samples) {
-        let [old, new] = if children[0].sample < children[1].sample {
-            children
-        } else {
-            [children[1], children[0]]
+    /// Whether each leaf lies in a region that is not known, if that is asked.
+    fn learn(&mut self) -> Vec<bool> {
+        let cells = (0..as_number(self.known.len())).map(|leaf| self.cell(leaf).cell());
+        let cells: Vec<Cell> = cells.collect();
+        let Some(doubts) = &mut self.doubts else {
+            return Vec::new();
         };
-        let before = self.expected[old.sample as usize];
-        self.cells[old.sample as usize] = old.cell;
-        self.nodes[old.sample as usize] = old.index;
-        self.cells.push(new.cell);
-        self.nodes.push(new.index);
-        self.expected.push(Expected::default());
-        if self.regions.is_some() {
-            self.doubts.push(Expected::default());
-        }
-        self.map.enter(new.sample, &new.cell.rectangle());
-        for half in [old, new] {
-            self.look_around(half, samples);
-            if !self.map.shows(&half.cell.rectangle()) {
-                let spread = samples.variance(old.sample, new.sample);
-                let variance = spread.max(INHERITED * before.variance());
-                self.expected[half.sample as usize].raise(variance, before.axis());
-            }
-        }
-    }
-
-    /// What the neighbours of a leaf lead to expect in it, and it in them.
-    fn look_around(&mut self, leaf: PlacedNode, samples: &impl Samples) {
-        let own = leaf.sample;
-        let around = self.map.around(&leaf.cell.rectangle());
-        let (mut expected, mut in_doubt) = (Expected::default(), Expected::default());
-        for neighbour in around.into_iter().flatten() {
-            let other = neighbour.leaf;
-            let variance = samples.variance(own, other);
-            let doubt = match self.regions {
-                Some(_) => samples.doubt(own, other),
-                None => 0.0,
-            };
-            if other == own || (variance == 0.0 && doubt == 0.0) {
-                continue;
-            }
-            let places = [own, other].map(|sample| samples.point(sample));
-            let (share, axis) = (share(neighbour, places), neighbour.axis);
-            let [here, there] = expected_variances(variance, share);
-            expected.raise(here, axis);
-            self.expected[other as usize].raise(there, axis);
-            let [here, there] = expected_variances(doubt, share);
-            in_doubt.raise(here, axis);
-            if let Some(doubt) = self.doubts.get_mut(other as usize) {
-                doubt.raise(there, axis);
-            }
-        }
-        self.expected[own as usize] = expected;
-        if let Some(doubt) = self.doubts.get_mut(own as usize) {
-            *doubt = in_doubt;
-        }
-    }
-
-    fn classes(&self) -> impl Iterator<Item = usize> {
-        let leaves = self.cells.iter().zip(&self.expected).enumerate();
-        leaves.map(|(leaf, (&cell, &expected))| {
-            let class = self.rule.class(cell, expected.variance());
-            let is_known = self.regions.as_ref().is_some_and(|regions| {
-                class != DUE && regions.is_known(cell, self.doubts[leaf].variance())
-            });
-            if is_known { NEVER } else { class }
-        })
-    }
-
-    fn learn_regions(&mut self) {
-        if let Some(regions) = &mut self.regions {
-            let doubts = self.doubts.iter().map(|doubt| doubt.variance());
-            regions.learn(self.cells.iter().copied().zip(doubts));
-        }
+        let leaves = || cells.iter().copied().zip(doubts.variances.iter().copied());
+        doubts.regions.learn(leaves());
+        leaves()
+            .map(|(cell, variance)| !doubts.regions.is_known(cell, variance))
+            .collect()
     }
 
     /// The part of the screen whose regions are not known yet; `None` if nobody asked for confidence.
     pub(crate) fn unknown_area(&mut self) -> Option<f64> {
-        self.learn_regions();
-        let regions = self.regions.as_ref()?;
-        let leaves = self.cells.iter().zip(&self.doubts);
-        let unknown = leaves.filter(|&(&cell, doubt)| !regions.is_known(cell, doubt.variance()));
-        Some(unknown.map(|(cell, _)| cell.area()).sum())
+        self.doubts.as_ref()?;
+        let unknown = (0..)
+            .zip(self.learn())
+            .filter(|&(_, is_unknown)| is_unknown);
+        Some(unknown.map(|(leaf, _)| self.cell(leaf).cell().area()).sum())
     }
 
-    fn split_of(&self, leaf: u32) -> Split {
-        let place = leaf as usize;
-        let cell = self.cells[place];
+    /// How a leaf is to be split.
+    pub(crate) fn split_of(&self, leaf: u32) -> Split {
+        let Known {
+            point, expected, ..
+        } = self.known[leaf as usize];
+        let cell = self.cell(leaf);
+        let axis = cell.cell().cut(self.size_px, expected.axis());
+        let half = 1 - cell.half_of(point, axis);
         Split {
-            leaf: PlacedNode {
-                index: self.nodes[place],
-                sample: leaf,
-                cell,
-            },
-            axis: cell.cut(self.size_px, self.expected[place].axis()),
+            leaf,
+            node: self.nodes[leaf as usize],
+            axis,
+            half,
+            free_half: cell.half(half, axis),
         }
     }
 
-    fn refine_map(&mut self) {
-        if self.map.resize(self.cells.len()) {
-            for (leaf, cell) in (0..).zip(&self.cells) {
-                self.map.enter(leaf, &cell.rectangle());
+    /// Splits a leaf: its sample keeps its half, a new one is in the other. Both have no class before they
+    /// [look around](Self::look_around).
+    ///
+    /// `nodes` are those of the old sample's half and of the new one's.
+    pub(crate) fn split(&mut self, split: &Split, new: &NewSample, nodes: [u32; 2]) {
+        let [old_node, new_node] = nodes;
+        let old = split.leaf as usize;
+        let number = as_number(self.known.len());
+        let halvings = split.free_half.halvings;
+        self.halved.push(Halved {
+            old: split.leaf,
+            new: number,
+            expected: self.known[old].expected,
+        });
+        self.known[old].expected = Expected::NOTHING;
+        self.places[old].halvings = halvings;
+        self.nodes[old] = old_node;
+        if let Some(doubts) = &mut self.doubts {
+            doubts.variances[old] = 0.0;
+        }
+        self.map.enter(number, split.free_half);
+        self.push(new, halvings, new_node);
+    }
+
+    /// Puts a leaf into the class that it has now.
+    fn classify(&mut self, leaf: u32) {
+        let leaf = leaf as usize;
+        let place = &mut self.places[leaf];
+        let variance = self.known[leaf].expected.variance();
+        let class = self.rule.class(depth(place.halvings), variance);
+        self.counts[usize::from(place.class)] -= 1;
+        self.counts[usize::from(class)] += 1;
+        place.class = class;
+    }
+
+    /// All halves that were made since the last call look at what lies around them.
+    ///
+    /// In steps, each for a number of halves, so that the memory is asked for many things at a time.
+    pub(crate) fn look_around(&mut self) {
+        let mut halved = std::mem::take(&mut self.halved);
+        for halved in halved.chunks(AT_ONCE / 2) {
+            let mut halves = ArrayVec::<Half, AT_ONCE>::new();
+            halves.extend(
+                halved
+                    .iter()
+                    .flat_map(|&Halved { old, new, .. }| [old, new])
+                    .map(|own| {
+                        let cell = self.cell(own);
+                        Half {
+                            own,
+                            cell,
+                            around: self.map.around(own, cell),
+                        }
+                    }),
+            );
+            let mut meetings = ArrayVec::<[Meeting; 4], AT_ONCE>::new();
+            meetings.extend(halves.iter().map(|half| self.meetings(half)));
+            for (half, meetings) in halves.iter().zip(&meetings) {
+                self.take_in(half, meetings);
+            }
+            for &halved in halved {
+                self.inherit(halved);
+            }
+        }
+        halved.clear();
+        self.halved = halved;
+    }
+
+    /// What a leaf and its neighbours lead to expect in each other.
+    fn meetings(&self, half: &Half) -> [Meeting; 4] {
+        let Half { own, cell, around } = *half;
+        let GridPoint(point) = self.known[own as usize].point;
+        let ([left, top], [right, bottom]) = (cell.from, cell.ends());
+        let borders = [left, right, top, bottom];
+        std::array::from_fn(|side| {
+            let other = around[side];
+            let axis = SIDES[side];
+            let GridPoint(there) = self.known[other as usize].point;
+            let share = share(
+                borders[side],
+                [point, there].map(|point| point[axis as usize]),
+            );
+            let variances = expected_variances(self.variance(own, other), share);
+            let [here, there] = variances.map(|variance| Expected::new(variance, axis));
+            Meeting { here, there, share }
+        })
+    }
+
+    /// Enters what a leaf and its neighbours met.
+    fn take_in(&mut self, half: &Half, meetings: &[Meeting; 4]) {
+        let mut expected = self.known[half.own as usize].expected;
+        for (&other, meeting) in half.around.iter().zip(meetings) {
+            expected = expected.max(meeting.here);
+            // A leaf beyond which the screen ends meets itself, without a difference.
+            let known = &mut self.known[other as usize];
+            if meeting.there > known.expected {
+                known.expected = meeting.there;
+                self.classify(other);
+            }
+            if self.doubts.is_some() {
+                self.doubt([half.own, other], meeting.share);
+            }
+        }
+        self.known[half.own as usize].expected = expected;
+        self.classify(half.own);
+    }
+
+    /// Where the map is too coarse to show the halves, they are expected to be as the whole was, or as they differ.
+    fn inherit(&mut self, halved: Halved) {
+        let Halved { old, new, expected } = halved;
+        if self.map.shows(self.cell(new)) {
+            return;
+        }
+        let variance = self.variance(old, new).max(INHERITED * expected.variance());
+        let inherited = Expected::new(variance, expected.axis());
+        for half in [old, new] {
+            let known = &mut self.known[half as usize];
+            if inherited > known.expected {
+                known.expected = inherited;
+                self.classify(half);
             }
         }
     }
+
+    fn doubt(&mut self, leaves: [u32; 2], share: f32) {
+        let Some(doubts) = &mut self.doubts else {
+            return;
+        };
+        let differences = differences(&self.known, self.colours.as_ref(), leaves);
+        let doubt = halved_square(differences[doubts.channel]);
+        let expected = expected_variances(doubt, share);
+        for (leaf, expected) in leaves.into_iter().zip(expected) {
+            let variance = &mut doubts.variances[leaf as usize];
+            *variance = variance.max(expected);
+        }
+    }
+
+    /// The variance of two samples, `(x1 - x2)² / 2`: the largest over the drivers that have both, 0 if there
+    /// is none.
+    fn variance(&self, one: u32, other: u32) -> f32 {
+        let drivers = self.colours.as_ref().filter(|colours| colours.are_drivers);
+        let PerChannel { a, c1, c2 } = differences(&self.known, drivers, [one, other]);
+        [a, c1, c2]
+            .map(halved_square)
+            .into_iter()
+            .fold(0.0, f32::max)
+    }
 }
 
-/// The part of the way from one sample to its neighbour's that lies on its own side of the border.
-fn share(neighbour: Neighbour, [own, other]: [ScreenPoint; 2]) -> f64 {
-    let [own, other] = match neighbour.axis {
-        Axis::X => [own.x, other.x],
-        Axis::Y => [own.y, other.y],
+/// The differences of two samples in what can be shown; NaN where one was not shaded or does not matter.
+fn differences(known: &[Known], colours: Option<&Colours>, leaves: [u32; 2]) -> PerChannel<f32> {
+    let [one, other] = leaves.map(|leaf| known[leaf as usize].shown);
+    let [c1, c2] = match colours {
+        Some(Colours { shown, .. }) => {
+            let [one, other] = leaves.map(|leaf| shown[leaf as usize]);
+            [one[0] - other[0], one[1] - other[1]]
+        }
+        None => [f32::NAN; 2],
     };
-    let share = (neighbour.border - own) / (other - own);
-    // Where several leaves share a square of the map it may name one that does not lie beyond the border.
-    if (0.0..=1.0).contains(&share) {
-        share
-    } else {
-        0.5
+    PerChannel {
+        a: one - other,
+        c1,
+        c2,
     }
+}
+
+fn halved_square(difference: f32) -> f32 {
+    0.5 * difference * difference
+}
+
+fn depth(halvings: [u8; 2]) -> u32 {
+    halvings.map(u32::from).iter().sum()
+}
+
+/// A value as far as a display can show it: white has A = 1, and no colour of sRGB has a chroma beyond ±1. A
+/// highlight a hundred times as bright as white would draw all samples to itself.
+fn shown(value: Option<f32>) -> f32 {
+    value.map_or(f32::NAN, |value| value.clamp(-1.0, 1.0))
+}
+
+fn as_number(count: usize) -> u32 {
+    u32::try_from(count).unwrap_or(u32::MAX)
 }

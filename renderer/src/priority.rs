@@ -25,25 +25,13 @@ const FLOOR: f32 = 1.0 / (255.0 * 255.0);
 const DROPPED_BITS: u32 = 23 - 3;
 
 /// The class of leaves that are not to be split.
-pub(crate) const NEVER: usize = 0;
+pub(crate) const NEVER: u16 = 0;
 
 /// The class of leaves that are split whatever was found in them.
-pub(crate) const DUE: usize = (f32::INFINITY.to_bits() >> DROPPED_BITS) as usize;
+pub(crate) const DUE: u16 = class_of(f32::INFINITY);
 
 /// How many classes of priority there are.
-pub(crate) const CLASSES: usize = DUE + 1;
-
-/// What two neighbours whose samples have this variance lead to expect in each other.
-///
-/// `share` is the part of the way between the samples that lies in the first.
-pub(crate) fn expected_variances(variance: f32, share: f64) -> [f32; 2] {
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "an estimate, of which a tree holds one for each leaf"
-    )]
-    let share = share as f32;
-    [share, 1.0 - share].map(|share| variance * share * share)
-}
+pub(crate) const CLASSES: usize = DUE as usize + 1;
 
 /// What a priority depends on beside the leaf.
 #[derive(Clone, Debug)]
@@ -76,56 +64,49 @@ impl PriorityRule {
         }
     }
 
-    /// The class of the priority of a leaf, in rising order.
-    pub(crate) fn class(&self, cell: Cell, expected: f32) -> usize {
-        let priority = self.weights[cell.depth() as usize] * (expected + FLOOR);
-        (priority.to_bits() >> DROPPED_BITS) as usize
+    /// The class of the priority of a leaf of this depth, in rising order.
+    pub(crate) fn class(&self, depth: u32, expected: f32) -> u16 {
+        class_of(self.weights[depth as usize] * (expected + FLOOR))
     }
+}
+
+/// The class of a priority, which is never negative.
+const fn class_of(priority: f32) -> u16 {
+    (priority.to_bits() >> DROPPED_BITS) as u16
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cell::Axis;
-
-    fn descend(levels: u32) -> Cell {
-        (0..levels).fold(Cell::ROOT, |cell, level| {
-            let axis = if level % 2 == 0 { Axis::X } else { Axis::Y };
-            cell.halves(axis)[0]
-        })
-    }
-
     /// The class by arithmetic instead of bits: eighths of an octave from 2⁻¹²⁷.
-    fn class_of(priority: f64) -> usize {
+    fn class_of_f64(priority: f64) -> u16 {
         let octave = priority.log2().floor();
         let eighths = (8.0 * (priority / octave.exp2() - 1.0)).floor();
         (0..DUE)
-            .find(|&class| class as f64 == 8.0 * (octave + 127.0) + eighths)
+            .find(|&class| f64::from(class) == 8.0 * (octave + 127.0) + eighths)
             .unwrap()
     }
 
     #[test]
     fn the_priority_is_the_formula_above_and_below_the_filter() {
         let rule = PriorityRule::new(2, 40, 1.0 / 64.0);
-        // A border a quarter of the way from one sample to the other: 1/16 and 9/16 of the variance.
-        let [here, there] = expected_variances(0.32, 0.25);
-        assert!((here - 0.02).abs() < 1e-7 && (there - 0.18).abs() < 1e-7);
+        let there = 0.18;
         let variance = 0.18 + 1.0 / 65025.0;
         // Areas of 1/16 and 1/256; the filter's is 2.25/64.
-        assert_eq!(rule.class(descend(4), there), class_of(variance / 16.0));
+        assert_eq!(rule.class(4, there), class_of_f64(variance / 16.0));
         let below = variance * 64.0 / 2.25 / 65536.0;
-        assert_eq!(rule.class(descend(8), there), class_of(below));
+        assert_eq!(rule.class(8, there), class_of_f64(below));
     }
 
     #[test]
     fn leaves_above_the_minimum_depth_are_due_and_the_deepest_are_never_split() {
         let rule = PriorityRule::new(2, 9, 1.0 / 64.0);
-        assert_eq!(rule.class(descend(1), 0.0), DUE);
-        assert!(rule.class(descend(2), 1.0) < DUE);
-        assert!(rule.class(descend(8), 0.0) > NEVER);
-        assert_eq!(rule.class(descend(9), 1.0), NEVER);
+        assert_eq!(rule.class(1, 0.0), DUE);
+        assert!(rule.class(2, 1.0) < DUE);
+        assert!(rule.class(8, 0.0) > NEVER);
+        assert_eq!(rule.class(9, 1.0), NEVER);
         // The smallest weight of all is still a number.
         let deep = PriorityRule::new(0, 48, 1.0);
-        assert!(deep.class(descend(47), 0.0) > NEVER);
+        assert!(deep.class(47, 0.0) > NEVER);
     }
 }

@@ -17,10 +17,10 @@ use rayon::prelude::*;
 use crate::cell::Cell;
 use crate::checkpoint::TakenSample;
 use crate::confidence::Confidence;
-use crate::leaves::{Leaves, Samples, Split};
+use crate::leaves::Leaves;
 use crate::priority::PriorityRule;
 use crate::sampler::{GridPoint, Sampler, ScreenPoint};
-use crate::screen_tree::{NewSample, Reach, ScreenTree};
+use crate::screen_tree::{NewSample, Reach, ScreenTree, Split};
 
 /// Samples taken between two reports of progress: a round is taken in pieces of this many.
 const BATCH: usize = 4096;
@@ -62,6 +62,12 @@ impl TracePlan {
             let leaves = 1_usize.checked_shl(depth).unwrap_or(usize::MAX);
             if all { self.rays() } else { rays.min(leaves) }
         })
+    }
+
+    /// What makes a leaf need another sample.
+    pub(crate) fn priority_rule(&self) -> PriorityRule {
+        let pixels = f64::from(self.size_px[0]) * f64::from(self.size_px[1]);
+        PriorityRule::new(self.min_depth, self.deepest(), 1.0 / pixels)
     }
 
     /// The depth of the deepest cell: where every driver has stopped there is nothing left to go by.
@@ -106,15 +112,15 @@ pub(crate) fn trace_from<S: Sampler>(
 ) -> ScreenTree {
     let rays = plan.rays();
     let mut ray_tree = S::RayTree::default();
-    let first = Probe::new(plan, 0, Cell::ROOT);
+    let [point, ..] = Cell::sample_points([Cell::ROOT; 4], plan.seed);
+    let first = Probe::new(plan, 0, point, 0);
     let first = match taken.first() {
         Some(taken) => first.recall(*taken),
         None => first.take(sampler, &mut ray_tree),
     };
     let mut tree = ScreenTree::new(&first, plan.capacity(), rays);
-    let pixels = f64::from(plan.size_px[0]) * f64::from(plan.size_px[1]);
-    let rule = PriorityRule::new(plan.min_depth, plan.deepest(), 1.0 / pixels);
-    let mut leaves = Leaves::new(rule, plan.size_px, plan.until);
+    let mut leaves = Leaves::new(plan, &first);
+    let mut new = Vec::new();
     while tree.len() < rays {
         let mut round = leaves.next_round();
         round.truncate(rays - tree.len());
@@ -125,13 +131,16 @@ pub(crate) fn trace_from<S: Sampler>(
             if is_cancelled() {
                 return tree;
             }
-            let new = sample_batch(sampler, plan, &tree, batch, taken);
-            for (split, new) in batch.iter().zip(&new) {
-                let children = tree.split(split.leaf, split.axis, new);
-                let samples = DriverSamples { plan, tree: &tree };
-                leaves.split(children, &samples);
+            let todo = (&leaves, tree.len(), batch);
+            sample_batch(sampler, plan, todo, taken, &mut new);
+            for new in &new {
+                let nodes = tree.split(&new.split, &new.sample);
+                leaves.split(&new.split, &new.sample, nodes);
             }
             progress(tree.len() as u64, rays as u64);
+        }
+        if tree.len() < rays || plan.until.is_some() {
+            leaves.look_around();
         }
     }
     tree.unknown_area = leaves.unknown_area();
@@ -145,10 +154,10 @@ struct Probe {
 }
 
 impl Probe {
-    fn new(plan: &TracePlan, sample: usize, cell: Cell) -> Self {
+    fn new(plan: &TracePlan, sample: usize, point: ScreenPoint, depth: u32) -> Self {
         Self {
-            point: cell.sample_point(plan.seed).into(),
-            is_shaded: PerChannel::from_fn(|c| plan.is_shaded(c, sample, cell.depth())),
+            point: point.into(),
+            is_shaded: PerChannel::from_fn(|c| plan.is_shaded(c, sample, depth)),
         }
     }
 
@@ -170,67 +179,47 @@ impl Probe {
     }
 }
 
-/// The new samples of a batch, in its order, taken on all threads or recalled.
+/// A new sample, and the leaf that is split for it.
+#[derive(Clone, Copy, Debug, Default)]
+struct NewLeaf {
+    split: Split,
+    sample: NewSample,
+}
+
+/// Finds the new samples of a batch of leaves, in its order, taken on all threads or recalled.
+///
+/// `first` is the number of the first of them.
 fn sample_batch<S: Sampler>(
     sampler: &S,
     plan: &TracePlan,
-    tree: &ScreenTree,
-    batch: &[Split],
+    (leaves, first, batch): (&Leaves, usize, &[u32]),
     taken: &[TakenSample],
-) -> Vec<NewSample> {
-    let first = tree.len();
-    let take = |ray_tree: &mut S::RayTree, (place, split): (usize, &Split)| {
-        let free_half = split.free_half(tree.point(split.leaf.sample));
-        let probe = Probe::new(plan, first + place, free_half);
-        match taken.get(first + place) {
-            Some(taken) => probe.recall(*taken),
-            None => probe.take(sampler, ray_tree),
+    new: &mut Vec<NewLeaf>,
+) {
+    let find = |ray_tree: &mut S::RayTree,
+                (place, (four, new)): (usize, (&[u32], &mut [NewLeaf]))| {
+        // The last of fewer than four stands in for those that are missing.
+        let splits = std::array::from_fn(|lane| leaves.split_of(four[lane.min(four.len() - 1)]));
+        let cells = splits.map(|split: Split| split.free_half.cell());
+        let points = Cell::sample_points(cells, plan.seed);
+        for (lane, new) in new.iter_mut().enumerate() {
+            let number = first + 4 * place + lane;
+            let probe = Probe::new(plan, number, points[lane], cells[lane].depth());
+            let sample = match taken.get(number) {
+                Some(taken) => probe.recall(*taken),
+                None => probe.take(sampler, ray_tree),
+            };
+            *new = NewLeaf {
+                split: splits[lane],
+                sample,
+            };
         }
     };
+    new.resize(batch.len(), NewLeaf::default());
     batch
-        .par_iter()
+        .par_chunks(4)
+        .zip(new.par_chunks_mut(4))
         .enumerate()
-        .with_min_len(16)
-        .map_init(S::RayTree::default, take)
-        .collect()
-}
-
-/// The samples as the drivers see them.
-struct DriverSamples<'a> {
-    plan: &'a TracePlan,
-    tree: &'a ScreenTree,
-}
-
-impl Samples for DriverSamples<'_> {
-    fn point(&self, sample: u32) -> ScreenPoint {
-        self.tree.point(sample)
-    }
-
-    /// The largest over the drivers that have both; of what can be shown, since a highlight a hundred times as
-    /// bright as white would draw all samples to itself.
-    fn variance(&self, one: u32, other: u32) -> f32 {
-        let drivers = Channel::ALL.into_iter().filter(|&c| self.plan.is_driver(c));
-        drivers
-            .filter_map(|channel| self.variance_of(channel, [one, other]))
-            .fold(0.0, f32::max)
-    }
-
-    fn doubt(&self, one: u32, other: u32) -> f32 {
-        let until = self.plan.until;
-        let doubt = until.and_then(|until| self.variance_of(until.channel, [one, other]));
-        doubt.unwrap_or(0.0)
-    }
-}
-
-impl DriverSamples<'_> {
-    fn variance_of(&self, channel: Channel, samples: [u32; 2]) -> Option<f32> {
-        let [one, other] = samples.map(|sample| self.tree.value(channel, sample));
-        let difference = shown(one?) - shown(other?);
-        Some(0.5 * difference * difference)
-    }
-}
-
-/// A value as far as a display can show it: white has A = 1, and no colour of sRGB has a chroma beyond ±1.
-fn shown(value: f32) -> f32 {
-    value.clamp(-1.0, 1.0)
+        .with_min_len(8)
+        .for_each_init(S::RayTree::default, find);
 }

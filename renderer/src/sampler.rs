@@ -17,8 +17,8 @@ pub struct ScreenPoint {
 }
 
 /// A point of the screen on a grid of 2³² × 2³², as it is stored: no cell is smaller than two of its steps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct GridPoint([u32; 2]);
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct GridPoint(pub(crate) [u32; 2]);
 
 /// The steps of the grid.
 const STEPS: f64 = 4_294_967_296.0;

@@ -24,6 +24,7 @@ use protocols::{Channel, PerChannel};
 use crate::account::RayAccount;
 use crate::cell::{Axis, Cell};
 use crate::channel_samples::ChannelSamples;
+use crate::grid_cell::GridCell;
 use crate::sampler::{GridPoint, ScreenPoint};
 
 /// A k-D tree over the screen, in the order of its making.
@@ -69,6 +70,12 @@ impl Node {
         }
     }
 
+    /// The places of the two children.
+    const fn children(self) -> [u32; 2] {
+        let second = 2 * self.splitter();
+        [second - 1, second]
+    }
+
     /// The samples of the two children of a node that held `old`.
     const fn samples_of_children(self, old: u32) -> [u32; 2] {
         if self.0 & Self::NEW_IS_FIRST == 0 {
@@ -98,11 +105,11 @@ impl PlacedNode {
     };
 
     fn children(self, node: Node) -> [Self; 2] {
-        let first = 2 * node.splitter() - 1;
+        let indices = node.children();
         let samples = node.samples_of_children(self.sample);
         let halves = self.cell.halves(node.axis());
         std::array::from_fn(|half| Self {
-            index: if half == 0 { first } else { first + 1 },
+            index: indices[half],
             sample: samples[half],
             cell: halves[half],
         })
@@ -138,10 +145,23 @@ impl Reach {
 }
 
 /// A new sample: where, and the value of each channel that was shaded.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct NewSample {
     pub(crate) point: GridPoint,
     pub(crate) values: PerChannel<Option<f32>>,
+}
+
+/// How a leaf is to be split.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Split {
+    /// The sample of the leaf.
+    pub(crate) leaf: u32,
+    pub(crate) node: u32,
+    pub(crate) axis: Axis,
+    /// Which half the sample does not lie in, so that it needs a new one: 0 or 1.
+    pub(crate) half: usize,
+    /// That half.
+    pub(crate) free_half: GridCell,
 }
 
 impl ScreenTree {
@@ -166,21 +186,20 @@ impl ScreenTree {
         tree
     }
 
-    /// Splits a leaf along an axis: its sample keeps the half that it lies in, `new` goes into the other.
+    /// Splits a leaf: its sample keeps the half that it lies in, `new` goes into the other.
     ///
-    /// Gives the two children.
-    pub(crate) fn split(
-        &mut self,
-        leaf: PlacedNode,
-        axis: Axis,
-        new: &NewSample,
-    ) -> [PlacedNode; 2] {
-        let old_half = leaf.cell.half_of(self.point(leaf.sample), axis);
-        let node = Node::split_by(as_index(self.points.len()), 1 - old_half, axis);
-        self.nodes[leaf.index as usize] = node;
+    /// Gives the node of the old sample's half and that of the new one's.
+    pub(crate) fn split(&mut self, split: &Split, new: &NewSample) -> [u32; 2] {
+        let node = Node::split_by(as_index(self.points.len()), split.half, split.axis);
+        self.nodes[split.node as usize] = node;
         self.nodes.extend([Node::LEAF; 2]);
         self.store(new);
-        leaf.children(node)
+        let [first, second] = node.children();
+        if split.half == 0 {
+            [second, first]
+        } else {
+            [first, second]
+        }
     }
 
     fn store(&mut self, new: &NewSample) {

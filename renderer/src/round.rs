@@ -1,0 +1,73 @@
+//! The leaves of one round in its order, from the class of each.
+
+use crate::priority::{DUE, NEVER};
+
+/// The leaves of the highest classes, `wanted` of them or as many as may be split; the highest class first,
+/// and within a class the older leaf.
+///
+/// `counts` is how many leaves each class has.
+pub(crate) fn round(
+    classes: impl ExactSizeIterator<Item = u16>,
+    counts: &[usize],
+    wanted: usize,
+) -> Vec<u32> {
+    // Where each class begins in the round; the lowest may be cut short.
+    let mut begins = vec![0; counts.len()];
+    let (mut end, mut lowest) = (0, DUE);
+    for class in (NEVER + 1..=DUE).rev() {
+        let place = usize::from(class);
+        if end >= wanted {
+            break;
+        }
+        begins[place] = end;
+        end += counts[place];
+        lowest = class;
+    }
+    let mut chosen = vec![(0, NEVER); end + 1];
+    let mut found = 0;
+    for (leaf, class) in (0_u32..).zip(classes) {
+        // Each is written; the next one takes the place of one that is not chosen.
+        chosen[found] = (leaf, class);
+        found += usize::from(class >= lowest);
+    }
+    let mut round = vec![0; end];
+    for &(leaf, class) in &chosen[..found] {
+        let place = &mut begins[usize::from(class)];
+        round[*place] = leaf;
+        *place += 1;
+    }
+    round.truncate(wanted);
+    round
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By sorting all leaves.
+    #[test]
+    fn a_round_is_the_beginning_of_all_leaves_in_order() {
+        for seed in 0..20_u32 {
+            let random =
+                |leaf: u32| (leaf + 1000 * seed).wrapping_mul(0x9e37_79b9).to_be_bytes()[1];
+            let classes: Vec<u16> = (0..500_u32)
+                .map(|leaf| match random(leaf) % 9 {
+                    0 => NEVER,
+                    1 if seed % 2 == 0 => DUE,
+                    class => 900 + u16::from(class),
+                })
+                .collect();
+            let mut counts = vec![0; usize::from(DUE) + 1];
+            for &class in &classes {
+                counts[usize::from(class)] += 1;
+            }
+            let mut sorted: Vec<u32> = (0..500).collect();
+            sorted.retain(|&leaf| classes[leaf as usize] != NEVER);
+            sorted.sort_by_key(|&leaf| std::cmp::Reverse(classes[leaf as usize]));
+            for wanted in [1, 31, 200, sorted.len(), 500] {
+                let found = round(classes.iter().copied(), &counts, wanted);
+                assert_eq!(found, sorted[..wanted.min(sorted.len())]);
+            }
+        }
+    }
+}
