@@ -1,6 +1,6 @@
 //! The box along the axes that holds a shape: a quick way to know that a ray misses it.
 
-use super::{Ray, Span, Vector};
+use super::Vector;
 
 /// By how much a box is wider than its shape, so that rounding never hides a hit.
 const MARGIN_M: f64 = 1e-7;
@@ -20,6 +20,31 @@ impl Bounds {
             low: one.min(other) - margin,
             high: one.max(other) + margin,
         }
+    }
+
+    /// The box between the corner of the least coordinates and that of the greatest.
+    pub(crate) const fn tight(low: Vector, high: Vector) -> Self {
+        Self { low, high }
+    }
+
+    /// The box widened by this much on every side.
+    #[inline]
+    pub(crate) fn padded(&self, margin_m: f64) -> Self {
+        let margin = Vector::new(margin_m, margin_m, margin_m);
+        Self {
+            low: self.low - margin,
+            high: self.high + margin,
+        }
+    }
+
+    /// Whether a place is in the box widened by this much.
+    #[inline]
+    pub(crate) fn is_within(&self, place: Vector, margin_m: f64) -> bool {
+        let Self { low, high } = self.padded(margin_m);
+        let is_between = |low: f64, x: f64, high: f64| low <= x && x <= high;
+        is_between(low.x, place.x, high.x)
+            && is_between(low.y, place.y, high.y)
+            && is_between(low.z, place.z, high.z)
     }
 
     /// The box of two discs of the same axis, or of one given twice.
@@ -75,36 +100,4 @@ impl Bounds {
             )
         })
     }
-
-    /// Where the ray enters the box, if it does so within the span.
-    ///
-    /// `inverse` holds the reciprocals of the ray's direction.
-    #[inline]
-    pub(crate) fn entry_m(&self, ray: &Ray, inverse: Vector, span: Span) -> Option<f64> {
-        let slab = |low: f64, high: f64, origin: f64, inverse: f64| {
-            let (one, other) = ((low - origin) * inverse, (high - origin) * inverse);
-            if one < other {
-                (one, other)
-            } else {
-                (other, one)
-            }
-        };
-        let (x_in, x_out) = slab(self.low.x, self.high.x, ray.origin.x, inverse.x);
-        let (y_in, y_out) = slab(self.low.y, self.high.y, ray.origin.y, inverse.y);
-        let (z_in, z_out) = slab(self.low.z, self.high.z, ray.origin.z, inverse.z);
-        let entry = larger(larger(x_in, y_in), larger(z_in, span.from_m));
-        let exit = smaller(smaller(x_out, y_out), smaller(z_out, span.to_m));
-        (entry <= exit).then_some(entry)
-    }
-}
-
-/// One instruction, unlike `f64::max`, which minds what is not a number.
-#[inline]
-fn larger(one: f64, other: f64) -> f64 {
-    if one > other { one } else { other }
-}
-
-#[inline]
-fn smaller(one: f64, other: f64) -> f64 {
-    if one < other { one } else { other }
 }

@@ -3,8 +3,10 @@
 //! Promises what trying every shape gives, bit for bit: the nearest hit, and of equal hits the one of the
 //! shape that comes first.
 
-use super::box_tree::Walk;
-use super::{Bounds, BoxTree, Hit, Ray, Shape, Span};
+use std::ops::Range;
+
+use super::descent::{Visitor, Walk};
+use super::{Bounds, BoxTree, Hit, Ray, Shape, SingleRay, Span};
 
 /// Shapes and the boxes over them.
 #[derive(Clone, Debug)]
@@ -48,32 +50,17 @@ impl Hierarchy {
 
     /// The nearest hit within the span, and the index of the shape.
     pub(crate) fn nearest(&self, ray: &Ray, span: Span) -> Option<(u32, Hit)> {
-        let mut nearest: Option<(u32, Hit)> = None;
-        let mut span = span;
-        let mut try_shape = |index: u32, shape: &Shape, span: &mut Span| {
-            let Some(hit) = shape.hit(ray, *span) else {
-                return;
-            };
-            let is_first = nearest.is_none_or(|(known, best)| {
-                hit.distance_m < best.distance_m
-                    || (hit.distance_m == best.distance_m && index < known)
-            });
-            if is_first {
-                nearest = Some((index, hit));
-                // The next float, so that an equal hit of an earlier shape still counts.
-                span.to_m = hit.distance_m.next_up();
-            }
+        let mut search = Nearest {
+            hierarchy: self,
+            ray,
+            best: None,
         };
+        let mut span = span;
         for &index in &self.endless {
-            try_shape(index, self.shape(index), &mut span);
+            search.try_shape(index, self.shape(index), &mut span);
         }
-        self.tree.visit(ray, &mut span, |places, span| {
-            for (index, shape) in &self.sorted[places] {
-                try_shape(*index, shape, span);
-            }
-            Walk::On
-        });
-        nearest
+        self.tree.visit(ray, span, &mut search);
+        search.best
     }
 
     /// Whether anything is hit within the span.
@@ -82,16 +69,67 @@ impl Hierarchy {
         if endless.any(|&index| self.shape(index).is_hit(ray, span)) {
             return true;
         }
-        let mut span = span;
-        let walk = self.tree.visit(ray, &mut span, |places, span| {
-            let mut shapes = self.sorted[places].iter();
-            if shapes.any(|(_, shape)| shape.is_hit(ray, *span)) {
-                Walk::Stop
-            } else {
-                Walk::On
-            }
+        let mut search = Any {
+            hierarchy: self,
+            ray,
+        };
+        self.tree.visit(ray, span, &mut search) == Walk::Stop
+    }
+}
+
+/// The search for the nearest shape.
+struct Nearest<'a> {
+    hierarchy: &'a Hierarchy,
+    ray: &'a Ray,
+    best: Option<(u32, Hit)>,
+}
+
+impl Nearest<'_> {
+    #[inline]
+    fn try_shape(&mut self, index: u32, shape: &Shape, span: &mut Span) {
+        let Some(hit) = shape.hit(self.ray, *span) else {
+            return;
+        };
+        let is_first = self.best.is_none_or(|(known, best)| {
+            hit.distance_m < best.distance_m || (hit.distance_m == best.distance_m && index < known)
         });
-        walk == Walk::Stop
+        if is_first {
+            self.best = Some((index, hit));
+            // The next float, so that an equal hit of an earlier shape still counts.
+            span.to_m = hit.distance_m.next_up();
+        }
+    }
+}
+
+impl Visitor for Nearest<'_> {
+    const NEAREST_FIRST: bool = true;
+
+    #[inline]
+    fn visit(&mut self, places: Range<usize>, _: Option<&SingleRay>, span: &mut Span) -> Walk {
+        for (index, shape) in &self.hierarchy.sorted[places] {
+            self.try_shape(*index, shape, span);
+        }
+        Walk::On
+    }
+}
+
+/// The search for any shape.
+struct Any<'a> {
+    hierarchy: &'a Hierarchy,
+    ray: &'a Ray,
+}
+
+impl Visitor for Any<'_> {
+    const NEAREST_FIRST: bool = false;
+
+    #[inline]
+    fn visit(&mut self, places: Range<usize>, _: Option<&SingleRay>, span: &mut Span) -> Walk {
+        let mut shapes = self.hierarchy.sorted[places].iter();
+        if shapes.any(|(_, shape)| shape.is_hit(self.ray, *span)) {
+            Walk::Stop
+        } else {
+            Walk::On
+        }
     }
 }
 

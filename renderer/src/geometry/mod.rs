@@ -4,10 +4,14 @@
 //! closed or flat and is seen from both sides; surface coordinates are in metres along the surface.
 
 pub(crate) mod bounds;
+pub(crate) mod box_node;
+#[cfg(target_arch = "x86_64")]
+pub(crate) mod box_test_v3;
 pub(crate) mod box_tree;
 pub(crate) mod cone;
 pub(crate) mod cuboid;
 pub(crate) mod cylinder;
+pub(crate) mod descent;
 pub(crate) mod disc;
 mod fan;
 mod fan_filling;
@@ -16,6 +20,7 @@ pub(crate) mod ground;
 pub(crate) mod hierarchy;
 pub(crate) mod mesh;
 mod outline;
+pub(crate) mod packet;
 pub(crate) mod pyramid;
 #[cfg(test)]
 mod random_shapes;
@@ -23,9 +28,12 @@ pub(crate) mod ray;
 pub(crate) mod rectangle;
 pub(crate) mod round_fan;
 pub(crate) mod shape;
+pub(crate) mod single_ray;
 pub(crate) mod sphere;
+pub(crate) mod triangle;
 pub(crate) mod vector;
 pub(crate) mod view_fan;
+pub(crate) mod wide_tree;
 
 pub(crate) use bounds::Bounds;
 pub(crate) use box_tree::BoxTree;
@@ -43,6 +51,7 @@ pub(crate) use ray::{Hit, Part, Ray, Span, SurfacePoint};
 pub(crate) use rectangle::Rectangle;
 pub(crate) use round_fan::RoundFan;
 pub(crate) use shape::Shape;
+pub(crate) use single_ray::SingleRay;
 pub(crate) use sphere::Sphere;
 pub(crate) use vector::Vector;
 pub(crate) use view_fan::ViewFan;
