@@ -5,19 +5,14 @@
 //!
 //! Not here: what is in the boxes. The tree only says which things may be met.
 //!
-//! Sources: Meister & Bittner (2018) for the nesting (crate `obvhs`); Dammertz, Hanika & Keller (2008) and Wald,
-//! Benthin & Boulos (2008) for nodes of many boxes.
+//! Source: Wald, Benthin & Boulos (2008) for nodes of many boxes.
 
 use std::ops::Range;
-use std::time::Duration;
-
-use obvhs::BvhBuildParams;
-use obvhs::aabb::Aabb;
-use obvhs::bvh2::builder::build_bvh2;
 
 use super::box_node::{BoxNode, Child};
 use super::descent::{Descent, Visitor, Walk};
 use super::single_ray::rounded;
+use super::split_tree::{SingleBox, SplitTree};
 use super::wide_tree::WideTree;
 use super::{Bounds, Ray, SingleRay, Span, Vector};
 
@@ -168,16 +163,11 @@ fn nested(boxes: &[Bounds], middle: Vector, margin_m: f64) -> WideTree {
     }
     let single = |tight: &Bounds| {
         let padded = tight.padded(margin_m);
-        Aabb {
-            min: rounded(padded.low() - middle).into(),
-            max: rounded(padded.high() - middle).into(),
+        SingleBox {
+            low: rounded(padded.low() - middle),
+            high: rounded(padded.high() - middle),
         }
     };
-    let boxes: Vec<Aabb> = boxes.iter().map(single).collect();
-    let parameters = BvhBuildParams {
-        max_prims_per_leaf: 1,
-        ..BvhBuildParams::medium_build()
-    };
-    let binary = build_bvh2(&boxes, parameters, &mut Duration::default());
-    WideTree::of(&binary.nodes, &binary.primitive_indices)
+    let boxes: Vec<SingleBox> = boxes.iter().map(single).collect();
+    WideTree::of(&SplitTree::over(&boxes))
 }

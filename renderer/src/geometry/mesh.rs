@@ -6,6 +6,10 @@
 //!
 //! A ray is tried against four triangles at a time in single precision, which lets through every one that it
 //! may meet, and then against these one by one.
+#![expect(
+    clippy::inline_always,
+    reason = "code for a processor's own instructions is compiled for them only where it is inlined"
+)]
 
 use std::ops::Range;
 
@@ -126,7 +130,7 @@ impl Mesh {
     }
 
     /// Tries one triangle after another of those that the ray may meet.
-    #[inline]
+    #[inline(always)]
     fn try_packets(
         &self,
         places: Range<usize>,
@@ -208,7 +212,7 @@ struct Nearest<'a> {
 impl Visitor for Nearest<'_> {
     const NEAREST_FIRST: bool = true;
 
-    #[inline]
+    #[inline(always)]
     fn visit(&mut self, places: Range<usize>, single: Option<&SingleRay>, span: &mut Span) -> Walk {
         self.mesh.try_packets(places, single, |triangle| {
             let Some(distance_m) = triangle.hit(self.ray, *span, self.mesh.reach_m) else {
@@ -236,7 +240,7 @@ struct Any<'a> {
 impl Visitor for Any<'_> {
     const NEAREST_FIRST: bool = false;
 
-    #[inline]
+    #[inline(always)]
     fn visit(&mut self, places: Range<usize>, single: Option<&SingleRay>, span: &mut Span) -> Walk {
         self.mesh.try_packets(places, single, |triangle| {
             if triangle.hit(self.ray, *span, self.mesh.reach_m).is_some() {

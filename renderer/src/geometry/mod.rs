@@ -30,6 +30,7 @@ pub(crate) mod round_fan;
 pub(crate) mod shape;
 pub(crate) mod single_ray;
 pub(crate) mod sphere;
+pub(crate) mod split_tree;
 pub(crate) mod triangle;
 pub(crate) mod vector;
 pub(crate) mod view_fan;

@@ -3,6 +3,8 @@
 //! It begins where the ray comes near the tree, so that its rounding is small beside the tree's size however
 //! far off the ray's own origin is.
 
+use wide::f32x4;
+
 use super::{Ray, Span, Vector};
 
 /// Stands for a coordinate of the direction that is nearly 0, so that no reciprocal is infinite.
@@ -26,18 +28,18 @@ impl SingleRay {
     #[inline]
     pub(crate) fn from(ray: &Ray, start_m: f64, origin: Vector) -> Self {
         let direction = rounded(ray.direction);
-        let steep = direction.map(|coordinate| {
-            if coordinate.abs() < LEVEL {
-                LEVEL.copysign(coordinate)
-            } else {
-                coordinate
-            }
-        });
+        let [x, y, z] = direction;
+        let level = f32x4::new([x, y, z, 1.0]);
+        let sign = level & f32x4::splat(-0.0);
+        let steep = level.abs().fast_max(f32x4::splat(LEVEL)) | sign;
+        let [x, y, z, _] = (f32x4::ONE / steep).to_array();
+        let from_above = sign.to_bitmask();
+        let bit = |axis: u32| (from_above >> axis & 1) as usize;
         Self {
             origin: rounded(origin),
             direction,
-            inverse: steep.map(f32::recip),
-            from_above: steep.map(|coordinate| usize::from(coordinate < 0.0)),
+            inverse: [x, y, z],
+            from_above: [bit(0), bit(1), bit(2)],
             start_m,
         }
     }

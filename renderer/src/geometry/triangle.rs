@@ -1,6 +1,10 @@
 //! A triangle, and where exactly a ray meets it.
 //!
 //! Source: Möller & Trumbore (1997).
+#![expect(
+    clippy::inline_always,
+    reason = "code for a processor's own instructions is compiled for them only where it is inlined"
+)]
 
 use super::{Bounds, Ray, Span, Vector};
 
@@ -39,7 +43,7 @@ impl Triangle {
     ///
     /// A ray that nearly lies in the triangle's plane gives a distance that is mostly rounding; it counts only
     /// if the place is within `reach_m` of the box of the triangle.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn hit(&self, ray: &Ray, span: Span, reach_m: f64) -> Option<f64> {
         let [a, b, c] = self.vectors();
         let (edge_b, edge_c) = (b - a, c - a);

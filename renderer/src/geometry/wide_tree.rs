@@ -1,4 +1,4 @@
-//! From a tree of two children to a node to one of eight, and from single things to leaves of a few.
+//! From a tree of two children to a node to one of eight.
 //!
 //! Of all ways to join the nodes of the binary tree, the one is taken for which a ray is expected to visit the
 //! least: a box is met in proportion to its area, and what is in it, a node or a leaf, then costs one
@@ -9,12 +9,9 @@
 use std::ops::Range;
 
 use arrayvec::ArrayVec;
-use obvhs::bvh2::node::Bvh2Node;
 
 use super::box_node::{BoxNode, Child, WIDTH};
-
-/// How many things a leaf holds at most.
-const MOST_IN_LEAF: u32 = 4;
+use super::split_tree::{MOST_IN_LEAF, SingleBox, SplitNode, SplitTree};
 
 /// The nodes of a tree of eight children to a node, the root first.
 #[derive(Clone, Debug, Default)]
@@ -26,19 +23,19 @@ pub(crate) struct WideTree {
 
 /// A binary tree, and what its parts cost a ray at best.
 struct Costs<'a> {
-    binary: &'a [Bvh2Node],
+    binary: &'a [SplitNode],
     /// For each node what it costs if it is split among at most 1, 2 ... 7 boxes of a wider node.
     least: Vec<[f32; WIDTH - 1]>,
     /// How many things are below each node.
-    things: Vec<u32>,
+    things: Vec<usize>,
 }
 
 impl WideTree {
-    /// The tree from a binary one, with a thing in each leaf, and the numbers of its things.
-    pub(crate) fn of(binary: &[Bvh2Node], things: &[u32]) -> Self {
-        let costs = Costs::of(binary);
+    /// The tree from a binary one.
+    pub(crate) fn of(split: &SplitTree) -> Self {
+        let costs = Costs::of(&split.nodes);
         let mut tree = Self::default();
-        tree.add(&costs, things, 0);
+        tree.add(&costs, &split.order, 0);
         tree
     }
 
@@ -47,8 +44,8 @@ impl WideTree {
         let mut members = ArrayVec::new();
         costs.gather(at, WIDTH, &mut members);
         let corners = |&member: &usize| {
-            let aabb = costs.binary[member].aabb();
-            [aabb.min.to_array(), aabb.max.to_array()]
+            let SingleBox { low, high } = costs.binary[member].bounds;
+            [low, high]
         };
         let place = self.nodes.len();
         self.nodes.push(BoxNode::of(members.iter().map(corners)));
@@ -64,13 +61,13 @@ impl WideTree {
         count(place)
     }
 
-    fn add_leaf(&mut self, binary: &[Bvh2Node], things: &[u32], at: usize) -> Range<usize> {
+    fn add_leaf(&mut self, binary: &[SplitNode], things: &[u32], at: usize) -> Range<usize> {
         let first = self.order.len();
         let mut waiting = vec![at];
         while let Some(at) = waiting.pop() {
-            let below = binary[at].first_index as usize;
-            if binary[at].is_leaf() {
-                let things = &things[below..below + binary[at].prim_count as usize];
+            let below = binary[at].first;
+            if binary[at].count > 0 {
+                let things = &things[below..below + binary[at].count];
                 self.order.extend(things);
             } else {
                 waiting.extend([below + 1, below]);
@@ -81,7 +78,7 @@ impl WideTree {
 }
 
 impl<'a> Costs<'a> {
-    fn of(binary: &'a [Bvh2Node]) -> Self {
+    fn of(binary: &'a [SplitNode]) -> Self {
         let mut costs = Self {
             binary,
             least: vec![[0.0; WIDTH - 1]; binary.len()],
@@ -91,8 +88,8 @@ impl<'a> Costs<'a> {
         let mut from_root = vec![0];
         let mut next = 0;
         while let Some(&at) = from_root.get(next) {
-            if !costs.binary[at].is_leaf() {
-                let below = costs.binary[at].first_index as usize;
+            if costs.binary[at].count == 0 {
+                let below = costs.binary[at].first;
                 from_root.extend([below, below + 1]);
             }
             next += 1;
@@ -105,10 +102,10 @@ impl<'a> Costs<'a> {
 
     fn weigh(&mut self, at: usize) {
         let node = &self.binary[at];
-        let area = node.aabb().half_area();
-        let below = node.first_index as usize;
-        if node.is_leaf() {
-            self.things[at] = node.prim_count;
+        let area = node.bounds.half_area();
+        let below = node.first;
+        if node.count > 0 {
+            self.things[at] = node.count;
             self.least[at] = [area; WIDTH - 1];
             return;
         }
@@ -142,17 +139,17 @@ impl<'a> Costs<'a> {
 
     fn is_leaf(&self, at: usize) -> bool {
         let node = &self.binary[at];
-        node.is_leaf()
-            || self.things[at] <= MOST_IN_LEAF && node.aabb().half_area() <= self.least[at][0]
+        node.count > 0
+            || self.things[at] <= MOST_IN_LEAF && node.bounds.half_area() <= self.least[at][0]
     }
 
     /// The nodes that stand in the boxes of a wide node made of this one.
     fn gather(&self, at: usize, boxes: usize, members: &mut ArrayVec<usize, WIDTH>) {
-        if self.binary[at].is_leaf() {
+        if self.binary[at].count > 0 {
             members.push(at);
             return;
         }
-        let below = self.binary[at].first_index as usize;
+        let below = self.binary[at].first;
         let (_, first) = self.split(below, boxes);
         for (child, mut boxes) in [(below, first), (below + 1, boxes - first)] {
             let least = &self.least[child];
@@ -174,21 +171,16 @@ fn count(number: usize) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use std::time::Duration;
-
-    use obvhs::BvhBuildParams;
-    use obvhs::aabb::Aabb;
-    use obvhs::bvh2::builder::build_bvh2;
     use proptest::prelude::*;
 
     use super::*;
 
-    /// Lists what is below a node, and checks that each box holds what is in it.
+    /// Lists what is below a node.
     fn below(tree: &mut WideTree, at: usize) -> Vec<u32> {
         let mut all = Vec::new();
         for child in *tree.nodes[at].children_mut() {
             if child.count() > 0 {
-                assert!(child.count() <= 4);
+                assert!(child.count() <= MOST_IN_LEAF);
                 all.extend(&tree.order[child.first()..child.first() + child.count()]);
             } else if child.first() > 0 {
                 all.extend(below(tree, child.first()));
@@ -204,15 +196,10 @@ mod tests {
         ) {
             let boxes = corners.iter().map(|corner| {
                 let low = corner.map(f32::from);
-                Aabb { min: low.into(), max: low.map(|x| x + 1.0).into() }
+                SingleBox { low, high: low.map(|x| x + 1.0) }
             });
-            let boxes: Vec<Aabb> = boxes.collect();
-            let parameters = BvhBuildParams {
-                max_prims_per_leaf: 1,
-                ..BvhBuildParams::medium_build()
-            };
-            let binary = build_bvh2(&boxes, parameters, &mut Duration::default());
-            let mut tree = WideTree::of(&binary.nodes, &binary.primitive_indices);
+            let boxes: Vec<SingleBox> = boxes.collect();
+            let mut tree = WideTree::of(&SplitTree::over(&boxes));
             let mut things = below(&mut tree, 0);
             things.sort_unstable();
             prop_assert!(things.into_iter().eq(0..u32::try_from(boxes.len()).unwrap()));
