@@ -29,6 +29,9 @@ use crate::screen_tree::{PlacedNode, ScreenTree};
 /// The rows of a picture that are worked on at a time, so that their sums stay in a processor's cache.
 const BAND_ROWS: usize = 40;
 
+/// Changes whose values are read at a time, so that the waits for memory pass together.
+const BATCH: usize = 64;
+
 /// Which images of one channel are wanted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
@@ -137,12 +140,21 @@ impl Band<'_> {
             along_x: Vec::new(),
             along_y: Vec::new(),
         };
-        let mut changes = changes.into_iter().peekable();
+        let mut steps = Vec::with_capacity(BATCH);
+        let mut begun = 0;
         for frame in self.frames {
-            while let Some(change) = changes.next_if(|change| (change.sample as usize) < frame.rays)
-            {
-                sums.add(change.cell, &change.steps(tree, wanted)?);
+            let is_before = |change: &Change| (change.sample as usize) < frame.rays;
+            let end = changes.partition_point(is_before);
+            for batch in changes[begun..end].chunks(BATCH) {
+                steps.clear();
+                for change in batch {
+                    steps.push(change.steps(tree, wanted)?);
+                }
+                for (change, steps) in batch.iter().zip(&steps) {
+                    sums.add(change.cell, steps);
+                }
             }
+            begun = end;
             normalise(&sums.pixels[frame.channel], on_screen, frame.values);
         }
         Some(())
@@ -182,28 +194,28 @@ fn changes(tree: &ScreenTree, wanted: &PerChannel<Wanted>, heights: &Range<f64>)
         old: None,
         cell: Cell::ROOT,
     }];
-    let mut waiting = vec![PlacedNode::ROOT];
-    while let Some(node) = waiting.pop() {
-        for child in tree.children(node, rays).into_iter().flatten() {
-            let cell = child.cell.rectangle();
-            if cell.top >= heights.end || cell.top + cell.height <= heights.start {
-                continue;
+    // Level by level: the nodes of a level wait for memory together.
+    let (mut level, mut next) = (vec![PlacedNode::ROOT], Vec::new());
+    while !level.is_empty() {
+        for node in level.drain(..) {
+            for child in tree.children(node, rays).into_iter().flatten() {
+                let cell = child.cell.rectangle();
+                if cell.top >= heights.end || cell.top + cell.height <= heights.start {
+                    continue;
+                }
+                let depth = child.cell.depth();
+                let is_wanted = |wanted: &&Wanted| wanted.depends_on(child.sample, depth);
+                if child.sample != node.sample && wanted.iter().any(is_wanted) {
+                    changes.push(Change {
+                        sample: child.sample,
+                        old: Some(node.sample),
+                        cell: child.cell,
+                    });
+                }
+                next.push(child);
             }
-            let is_new = child.sample != node.sample;
-            let depth = child.cell.depth();
-            if is_new
-                && wanted
-                    .iter()
-                    .any(|wanted| wanted.depends_on(child.sample, depth))
-            {
-                changes.push(Change {
-                    sample: child.sample,
-                    old: Some(node.sample),
-                    cell: child.cell,
-                });
-            }
-            waiting.push(child);
         }
+        std::mem::swap(&mut level, &mut next);
     }
     changes.sort_unstable_by_key(|change| change.sample);
     changes
