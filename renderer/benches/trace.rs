@@ -37,9 +37,6 @@ fn main() -> Result<(), RendererError> {
 
 fn measure(path: &Path) -> Result<(), RendererError> {
     let scene = Scene::read(path)?;
-    let set_up_secs = least_secs(3, || {
-        black_box(scene.sampler(Quadrature::Bands(16), SIZE_PX));
-    });
     let sampler = scene.sampler(Quadrature::Bands(16), SIZE_PX);
     let plan = TracePlan {
         until: None,
@@ -65,30 +62,27 @@ fn measure(path: &Path) -> Result<(), RendererError> {
             black_box(&one);
         }
     }));
+    let shading = |shade: &dyn Fn(&RayTree)| nanoseconds(shading_secs(&trees, shade));
     let shade = Channel::ALL.map(|channel| {
-        // The clock's ticks are too long for a single pass.
-        let passes = 8;
-        let secs = least_secs(ROUNDS, || {
-            for _ in 0..passes {
-                for tree in &trees {
-                    black_box(sampler.shade(tree, channel));
-                }
-            }
-        });
-        nanoseconds(secs / f64::from(passes))
+        shading(&|tree| {
+            black_box(sampler.shade(tree, channel));
+        })
+    });
+    let shade_all = shading(&|tree| {
+        black_box(sampler.shade_all(tree));
     });
     let whole = nanoseconds(least_secs(ROUNDS, || {
         black_box(trace(&sampler, &plan, &|_, _| ()));
     }));
-    let upkeep = whole - intersect - shade.iter().sum::<f64>();
+    let upkeep = whole - intersect - shade_all;
     println!(
         "{}: {:.2} hits a sample; set-up {:.1} ms; bits {bits:016x}",
         path.display(),
         f64::from(hits) / RAYS as f64,
-        1e3 * set_up_secs
+        1e3 * set_up_secs(&scene)
     );
     println!(
-        "  intersect {intersect:.0} ns, shade A {:.1}, C1 {:.1}, C2 {:.1} ns",
+        "  intersect {intersect:.0} ns, shade A {:.1}, C1 {:.1}, C2 {:.1}, all at once {shade_all:.1} ns",
         shade[0], shade[1], shade[2]
     );
     println!(
@@ -107,4 +101,27 @@ fn bits(sampler: &SceneSampler<'_>, trees: &[RayTree]) -> u64 {
     values.fold(0xcbf2_9ce4_8422_2325, |digest, value| {
         (digest ^ u64::from(value.to_bits())).wrapping_mul(0x0100_0000_01b3)
     })
+}
+
+/// How long it takes to make a sampler.
+fn set_up_secs(scene: &Scene) -> f64 {
+    // The clock's ticks are too long for a single pass.
+    let passes = 10;
+    let secs = least_secs(ROUNDS, || {
+        for _ in 0..passes {
+            black_box(scene.sampler(Quadrature::Bands(16), SIZE_PX));
+        }
+    });
+    secs / f64::from(passes)
+}
+
+/// How long it takes to shade all.
+fn shading_secs(trees: &[RayTree], shade: &dyn Fn(&RayTree)) -> f64 {
+    let passes = 8;
+    let secs = least_secs(ROUNDS, || {
+        for _ in 0..passes {
+            trees.iter().for_each(shade);
+        }
+    });
+    secs / f64::from(passes)
 }

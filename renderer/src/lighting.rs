@@ -105,7 +105,7 @@ impl<'scene> Lighting<'scene> {
                 let arrival = source.arrival(surface.place);
                 let is_blocked = |ray: &Ray, span| match &self.fans[place] {
                     Some(fan) => fan.is_blocked((ray, span), surface.outside_of, shapes.shapes()),
-                    None => shapes.is_blocked(ray, span),
+                    None => shapes.is_blocked(ray, span, surface.outside_of),
                 };
                 lit_from(&arrival, surface, receiver, is_blocked)
             }
@@ -123,7 +123,8 @@ impl<'scene> Lighting<'scene> {
         if !receiver.has_body && receiver.highlight.is_none() {
             return sum;
         }
-        let is_blocked = |ray: &Ray, span| self.scene.shapes.is_blocked(ray, span);
+        let shapes = &self.scene.shapes;
+        let is_blocked = |ray: &Ray, span| shapes.is_blocked(ray, span, surface.outside_of);
         // From where the shadow rays start, so that each ends just before the light's own surface.
         let start = surface.lifted();
         for row in 0..light.side {

@@ -274,6 +274,8 @@ fn compared(scene: &Scene) -> Vec<(ScreenPoint, PerChannel<f64>, PerChannel<f64>
                 (plain_sum - quick).abs() < 2e-5,
                 "{plain_sum} is not {quick}"
             );
+            let of_all = sampler.shade_all(&tree)[channel];
+            assert_eq!(of_all.to_bits(), quick.to_bits());
             f64::from(quick)
         });
         (at, quick, exact, tree.hits())

@@ -163,10 +163,15 @@ impl Probe {
 
     fn take<S: Sampler>(&self, sampler: &S, ray_tree: &mut S::RayTree) -> NewSample {
         sampler.intersect(self.point.into(), ray_tree);
-        let shade = |channel| self.is_shaded[channel].then(|| sampler.shade(ray_tree, channel));
+        let values = if Channel::ALL.into_iter().all(|c| self.is_shaded[c]) {
+            let values = sampler.shade_all(ray_tree);
+            PerChannel::from_fn(|channel| Some(values[channel]))
+        } else {
+            PerChannel::from_fn(|c| self.is_shaded[c].then(|| sampler.shade(ray_tree, c)))
+        };
         NewSample {
             point: self.point,
-            values: PerChannel::from_fn(shade),
+            values,
         }
     }
 

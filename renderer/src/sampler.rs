@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use protocols::Channel;
+use protocols::{Channel, PerChannel};
 
 /// A point of the screen: x from 0 (left) to 1 (right), y from 0 (top) to 1 (bottom).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,6 +55,11 @@ pub trait Sampler: Sync {
 
     /// The tristimulus value of one channel for a ray tree; the same whatever else is shaded.
     fn shade(&self, tree: &Self::RayTree, channel: Channel) -> f32;
+
+    /// What [`Self::shade`] gives for each channel, bit for bit; it may cost less than one by one.
+    fn shade_all(&self, tree: &Self::RayTree) -> PerChannel<f32> {
+        PerChannel::from_fn(|channel| self.shade(tree, channel))
+    }
 
     /// The wavelengths in nm at which there is a spectrum; none for a picture without.
     fn wavelengths_nm(&self) -> &[f64] {

@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use arrayvec::ArrayVec;
-use protocols::{Channel, Quadrature};
+use protocols::{Channel, PerChannel, Quadrature};
 
 use crate::band_shader::BandShader;
 use crate::geometry::{Hit, Ray, Span, Vector, ViewFan};
@@ -44,6 +44,8 @@ pub struct SceneSampler<'scene> {
 #[derive(Clone, Copy, Debug)]
 struct Beam {
     ray: Ray,
+    /// The shape whose outside it leaves.
+    outside_of: Option<u32>,
     /// What part of what it finds reaches the eye, whatever its colour.
     share: f64,
     /// The same at the wavelength at which most does.
@@ -87,7 +89,7 @@ impl<'scene> SceneSampler<'scene> {
         let shapes = &self.scene.shapes;
         match &self.view {
             Some(view) if beam.depth == 1 => view.nearest((at.x, at.y), &beam.ray, shapes.shapes()),
-            _ => shapes.nearest(&beam.ray, Span::up_to(f64::INFINITY)),
+            _ => shapes.nearest(&beam.ray, Span::up_to(f64::INFINITY), beam.outside_of),
         }
     }
 
@@ -127,12 +129,12 @@ impl<'scene> SceneSampler<'scene> {
             Some(Mirror::Coat { refractive_index }) => {
                 let cos_incidence = surface.mirrored.dot(surface.normal).clamp(0.0, 1.0);
                 let share = fresnel_reflectance(cos_incidence, refractive_index);
-                beam.send(surface.mirrored_ray(), (share, 1.0), beam.tint, beams);
+                beam.send(surface.sent_back(), (share, 1.0), beam.tint, beams);
                 1.0 - share
             }
             Some(Mirror::Metal { reflectance, peak }) => {
                 if let Some(tint) = self.shader.tints().after(beam.tint, reflectance) {
-                    beam.send(surface.mirrored_ray(), (1.0, peak), tint, beams);
+                    beam.send(surface.sent_back(), (1.0, peak), tint, beams);
                 }
                 0.0
             }
@@ -289,20 +291,29 @@ impl Surface {
         }
     }
 
-    fn mirrored_ray(&self) -> Ray {
-        Ray {
+    /// The mirrored ray, and the shape whose outside it leaves.
+    fn sent_back(&self) -> (Ray, Option<u32>) {
+        let ray = Ray {
             origin: self.lifted(),
             direction: self.mirrored,
-        }
+        };
+        (ray, self.outside_of)
     }
 }
 
 impl Beam {
     /// Sends a ray on that counts for these shares of this one: whatever its colour, and at most.
     #[inline]
-    fn send(&self, ray: Ray, (share, peak): (f64, f64), tint: TintIndex, beams: &mut Beams) {
+    fn send(
+        &self,
+        (ray, outside_of): (Ray, Option<u32>),
+        (share, peak): (f64, f64),
+        tint: TintIndex,
+        beams: &mut Beams,
+    ) {
         let next = Self {
             ray,
+            outside_of,
             share: self.share * share,
             peak: self.peak * share * peak,
             tint,
@@ -316,20 +327,20 @@ impl Beam {
     /// Sends on what glass mirrors and what it lets through, the stronger one to be followed first.
     fn pass_on(&self, surface: &Surface, relative_index: f64, beams: &mut Beams) {
         let refraction = refraction(self.ray.direction, surface.normal, relative_index);
-        let mirrored = (surface.mirrored_ray(), refraction.reflectance);
+        let mirrored = (surface.sent_back(), refraction.reflectance);
         let through = refraction.direction.map(|direction| {
             let ray = Ray {
                 origin: surface.place - surface.facing * LIFT_M,
                 direction,
             };
-            (ray, 1.0 - refraction.reflectance)
+            ((ray, None), 1.0 - refraction.reflectance)
         });
         let rays = match through {
             Some(through) if through.1 < mirrored.1 => [Some(through), Some(mirrored)],
             through => [Some(mirrored), through],
         };
-        for (ray, share) in rays.into_iter().flatten() {
-            self.send(ray, (share, 1.0), self.tint, beams);
+        for (sent, share) in rays.into_iter().flatten() {
+            self.send(sent, (share, 1.0), self.tint, beams);
         }
     }
 }
@@ -342,6 +353,7 @@ impl Sampler for SceneSampler<'_> {
         let mut beams = Beams::new();
         beams.push(Beam {
             ray: self.scene.camera.ray(at, self.aspect),
+            outside_of: None,
             share: 1.0,
             peak: 1.0,
             tint: 0,
@@ -357,6 +369,10 @@ impl Sampler for SceneSampler<'_> {
 
     fn shade(&self, tree: &RayTree, channel: Channel) -> f32 {
         self.shader.shade(tree, channel)
+    }
+
+    fn shade_all(&self, tree: &RayTree) -> PerChannel<f32> {
+        self.shader.shade_all(tree)
     }
 
     fn wavelengths_nm(&self) -> &[f64] {

@@ -34,8 +34,6 @@ struct ChannelTables {
     /// All reflectances one after another, and last a perfect white.
     reflectances: Vec<Lanes>,
     tints: Vec<Lanes>,
-    /// The light of a way of share 1, by [`Shader::product`].
-    products: Vec<f32>,
 }
 
 /// The spectra of a scene, ready for each channel.
@@ -47,7 +45,9 @@ pub(crate) struct Shader {
     lights: usize,
     /// How many reflectances there are, white among them.
     reflectances: usize,
-    products: usize,
+    /// The light of a way of share 1, by [`Shader::products`]: A, C1, C2 and a place without a meaning, so that
+    /// all are multiplied side by side.
+    products: Vec<Lanes>,
 }
 
 impl Shader {
@@ -69,12 +69,13 @@ impl Shader {
             tints,
             lights,
             reflectances,
-            products: multiplied * of_each_tint,
+            products: Vec::new(),
         };
-        for channel in Channel::ALL {
-            let products = (0..shader.products).map(|product| shader.multiplied(product, channel));
-            shader.tables[channel].products = products.collect();
-        }
+        let products = (0..multiplied * of_each_tint).map(|product| {
+            let [a, c1, c2] = Channel::ALL.map(|channel| shader.multiplied(product, channel));
+            [a, c1, c2, 0.0]
+        });
+        shader.products = products.collect();
         shader
     }
 
@@ -103,21 +104,41 @@ impl Shader {
     #[inline]
     pub(crate) fn products(&self, tint: TintIndex, body: ReflectanceIndex) -> Option<u32> {
         let place = (usize::from(tint) * self.reflectances + usize::from(body)) * self.lights;
-        (place < self.products).then(|| u32::try_from(place).unwrap_or(u32::MAX))
+        (place < self.products.len()).then(|| u32::try_from(place).unwrap_or(u32::MAX))
     }
 
     /// The tristimulus value of a channel.
     #[inline]
     pub(crate) fn shade(&self, tree: &RayTree, channel: Channel) -> f32 {
         let tables = &self.tables[channel];
+        let lane = channel as usize;
         let mut sum = 0.0;
         for path in tree.paths() {
-            sum += path.share * tables.products[path.product as usize];
+            sum += path.share * self.products[path.product as usize][lane];
         }
         for (surface, shares) in tree.surfaces() {
             sum += tables.of_surface(surface, shares);
         }
         sum
+    }
+
+    /// The tristimulus values of all channels, in one pass: the same sums.
+    #[inline]
+    pub(crate) fn shade_all(&self, tree: &RayTree) -> PerChannel<f32> {
+        let mut lanes: Lanes = [0.0; LANES];
+        for path in tree.paths() {
+            let products = &self.products[path.product as usize];
+            for (sum, product) in lanes.iter_mut().zip(products) {
+                *sum += path.share * product;
+            }
+        }
+        let mut sums = PerChannel::from_fn(|channel| lanes[channel as usize]);
+        for (surface, shares) in tree.surfaces() {
+            for channel in Channel::ALL {
+                sums[channel] += self.tables[channel].of_surface(surface, shares);
+            }
+        }
+        sums
     }
 
     /// The same as [`Self::shade`] but for rounding, every way summed wavelength by wavelength.
@@ -212,7 +233,6 @@ impl ChannelTables {
             lights: lights.collect(),
             reflectances,
             tints: tints.collect(),
-            products: Vec::new(),
         }
     }
 

@@ -6,8 +6,8 @@ use std::ops::Range;
 
 use super::fan::{Fan, LEAF, Leaf, MAX_LEVELS, NONE, Part, WIDTH};
 use super::outline::{Outline, Reach};
-use super::pyramid::{NarrowPyramid, Pyramid, Square};
-use super::{Ray, Shape, Span};
+use super::pyramid::{Grid, Pyramid, Square};
+use super::{Ray, Shape, Span, Vector};
 
 /// With longer lists on average a hierarchy of boxes is quicker.
 const LONGEST_MEAN: f64 = 24.0;
@@ -19,6 +19,8 @@ const MOST_LEAVES: usize = 1 << 14;
 /// they cost.
 const FEW_SEEN: usize = 2;
 const FEW_HIDING: usize = 1;
+/// Among more shapes than this hardly one covers the others.
+const MOST_COVERING: usize = 16;
 /// No more squares within squares for an eye, whose rays mostly meet what their pyramid holds.
 const VIEW_LEVELS: u32 = 3;
 
@@ -29,6 +31,16 @@ pub(super) enum Looks {
     Out,
     /// What stands in the light of a lamp at the apex.
     Shadows,
+}
+
+impl Looks {
+    /// So many squares within squares.
+    const fn levels(self) -> u32 {
+        match self {
+            Self::Out => VIEW_LEVELS,
+            Self::Shadows => MAX_LEVELS,
+        }
+    }
 }
 
 /// A shape that may be met in a pyramid.
@@ -42,7 +54,7 @@ struct Candidate {
 
 /// A fan while it is filled.
 struct Filling<'a> {
-    pyramid: &'a Pyramid,
+    grid: Grid,
     shapes: &'a [Shape],
     outlines: &'a [Outline],
     looks: Looks,
@@ -77,7 +89,7 @@ impl Fan {
             covers: false,
         });
         let mut filling = Filling {
-            pyramid,
+            grid: Grid::new(pyramid, 1 << (2 * looks.levels())),
             shapes,
             outlines,
             looks,
@@ -106,7 +118,7 @@ impl Filling<'_> {
         self.fan.nodes.push([LEAF; 16]);
         for (part, square) in square.parts(4).enumerate() {
             self.find(square, start..end);
-            let is_last = level + 1 == self.levels()
+            let is_last = level + 1 == self.looks.levels()
                 || self.trials > MOST_TRIALS
                 || self.fan.leaves.len() > MOST_LEAVES;
             self.fan.nodes[node][part] = if is_last || self.is_told_apart(end) {
@@ -124,31 +136,31 @@ impl Filling<'_> {
         named(node)
     }
 
-    const fn levels(&self) -> u32 {
-        match self.looks {
-            Looks::Out => VIEW_LEVELS,
-            Looks::Shadows => MAX_LEVELS,
-        }
-    }
-
     /// Puts those of the candidates on the stack that a ray of a square may meet before one that it must.
     fn find(&mut self, square: Square, candidates: Range<usize>) {
-        let pyramid = self.pyramid.within(square);
+        let pyramid = self.grid.within(square);
         let start = self.stack.len();
         self.trials += candidates.len();
-        let mut covered_m = f64::INFINITY;
         for place in candidates {
-            let Candidate { shape, covers, .. } = self.stack[place];
-            if let Some(reach) = self.outlines[usize::from(shape)].within(&pyramid) {
-                let covers = covers || self.covers(shape, &pyramid);
-                if covers {
-                    covered_m = covered_m.min(reach.far_m);
-                }
-                self.stack.push(Candidate {
-                    shape,
-                    reach,
-                    covers,
-                });
+            let candidate = self.stack[place];
+            if let Some(reach) = self.outlines[usize::from(candidate.shape)].within(&pyramid) {
+                self.stack.push(Candidate { reach, ..candidate });
+            }
+        }
+        if !(2..=MOST_COVERING).contains(&(self.stack.len() - start)) {
+            return;
+        }
+        let beyond = self.grid.beyond(square);
+        let mut covered_m = f64::INFINITY;
+        for place in start..self.stack.len() {
+            let Candidate {
+                shape,
+                reach,
+                covers,
+            } = self.stack[place];
+            if covers || self.covers(shape, &beyond) {
+                self.stack[place].covers = true;
+                covered_m = covered_m.min(reach.far_m);
             }
         }
         let mut kept = start;
@@ -161,17 +173,14 @@ impl Filling<'_> {
         self.stack.truncate(kept);
     }
 
-    /// Whether every ray of a pyramid meets a shape, and also those that pass it by a little.
-    fn covers(&self, shape: u16, pyramid: &NarrowPyramid) -> bool {
+    /// Whether every ray of a square meets a shape, given directions a little outside its corners.
+    fn covers(&self, shape: u16, beyond: &[Vector; 4]) -> bool {
         let shape = &self.shapes[usize::from(shape)];
+        let origin = self.grid.apex();
         shape.is_convex()
-            && pyramid.beyond_corners.iter().all(|&direction| {
-                let ray = Ray {
-                    origin: self.pyramid.apex,
-                    direction,
-                };
-                shape.is_hit(&ray, COVERING)
-            })
+            && beyond
+                .iter()
+                .all(|&direction| shape.is_hit(&Ray { origin, direction }, COVERING))
     }
 
     /// Whether narrower pyramids would hardly have less to try.

@@ -48,11 +48,25 @@ impl Hierarchy {
         &self.shapes
     }
 
-    /// The nearest hit within the span, and the index of the shape.
-    pub(crate) fn nearest(&self, ray: &Ray, span: Span) -> Option<(u32, Hit)> {
+    /// The shape that a ray from its outside cannot meet, so that it need not be tried.
+    #[inline]
+    fn left_behind(&self, outside_of: Option<u32>) -> u32 {
+        let shape = outside_of.filter(|&index| self.shape(index).is_convex());
+        shape.unwrap_or(u32::MAX)
+    }
+
+    /// The nearest hit within the span, and the index of the shape; the ray leaves the outside of a shape,
+    /// or begins anywhere.
+    pub(crate) fn nearest(
+        &self,
+        ray: &Ray,
+        span: Span,
+        outside_of: Option<u32>,
+    ) -> Option<(u32, Hit)> {
         let mut search = Nearest {
             hierarchy: self,
             ray,
+            left: self.left_behind(outside_of),
             best: None,
         };
         let mut span = span;
@@ -63,15 +77,17 @@ impl Hierarchy {
         search.best
     }
 
-    /// Whether anything is hit within the span.
-    pub(crate) fn is_blocked(&self, ray: &Ray, span: Span) -> bool {
-        let mut endless = self.endless.iter();
+    /// Whether anything is hit within the span, by a ray as in [`Self::nearest`].
+    pub(crate) fn is_blocked(&self, ray: &Ray, span: Span, outside_of: Option<u32>) -> bool {
+        let left = self.left_behind(outside_of);
+        let mut endless = self.endless.iter().filter(|&&index| index != left);
         if endless.any(|&index| self.shape(index).is_hit(ray, span)) {
             return true;
         }
         let mut search = Any {
             hierarchy: self,
             ray,
+            left,
         };
         self.tree.visit(ray, span, &mut search) == Walk::Stop
     }
@@ -81,12 +97,17 @@ impl Hierarchy {
 struct Nearest<'a> {
     hierarchy: &'a Hierarchy,
     ray: &'a Ray,
+    /// Not to be tried.
+    left: u32,
     best: Option<(u32, Hit)>,
 }
 
 impl Nearest<'_> {
     #[inline]
     fn try_shape(&mut self, index: u32, shape: &Shape, span: &mut Span) {
+        if index == self.left {
+            return;
+        }
         let Some(hit) = shape.hit(self.ray, *span) else {
             return;
         };
@@ -117,6 +138,8 @@ impl Visitor for Nearest<'_> {
 struct Any<'a> {
     hierarchy: &'a Hierarchy,
     ray: &'a Ray,
+    /// Not to be tried.
+    left: u32,
 }
 
 impl Visitor for Any<'_> {
@@ -125,7 +148,7 @@ impl Visitor for Any<'_> {
     #[inline]
     fn visit(&mut self, places: Range<usize>, _: Option<&SingleRay>, span: &mut Span) -> Walk {
         let mut shapes = self.hierarchy.sorted[places].iter();
-        if shapes.any(|(_, shape)| shape.is_hit(self.ray, *span)) {
+        if shapes.any(|(index, shape)| *index != self.left && shape.is_hit(self.ray, *span)) {
             Walk::Stop
         } else {
             Walk::On
@@ -148,13 +171,45 @@ mod tests {
             let ray = stream.ray();
             let nearest = by_trying_all(&shapes, &ray);
             let span = Span::up_to(f64::INFINITY);
-            assert_eq!(hierarchy.nearest(&ray, span), nearest);
-            assert_eq!(hierarchy.is_blocked(&ray, span), nearest.is_some());
+            assert_eq!(hierarchy.nearest(&ray, span, None), nearest);
+            assert_eq!(hierarchy.is_blocked(&ray, span, None), nearest.is_some());
             if let Some((_, hit)) = nearest {
                 hits += 1;
-                assert!(!hierarchy.is_blocked(&ray, Span::up_to(hit.distance_m)));
+                assert!(!hierarchy.is_blocked(&ray, Span::up_to(hit.distance_m), None));
             }
         }
         assert!(hits > 10_000, "only {hits} hits");
+    }
+    #[test]
+    fn what_a_ray_leaves_behind_need_not_be_tried() {
+        let mut stream = Stream(6);
+        let shapes = many(&mut stream);
+        let hierarchy = Hierarchy::over(shapes.clone());
+        let mut hits = 0;
+        for _ in 0..20_000 {
+            let ray = stream.ray();
+            let Some((index, hit)) = by_trying_all(&shapes, &ray) else {
+                continue;
+            };
+            let (shape, place) = (&shapes[index as usize], ray.at(hit.distance_m));
+            let normal = shape.normal(place, hit.part);
+            if normal.dot(ray.direction) > 0.0 && shape.is_closed() {
+                continue;
+            }
+            let facing = normal * -normal.dot(ray.direction).signum();
+            let mirrored = Ray {
+                origin: place + facing * 1e-6,
+                direction: ray.direction.reflected(facing),
+            };
+            let nearest = by_trying_all(&shapes, &mirrored);
+            let span = Span::up_to(f64::INFINITY);
+            let (found, is_blocked) = (
+                hierarchy.nearest(&mirrored, span, Some(index)),
+                hierarchy.is_blocked(&mirrored, span, Some(index)),
+            );
+            assert_eq!((found, is_blocked), (nearest, nearest.is_some()));
+            hits += u32::from(nearest.is_some());
+        }
+        assert!(hits > 3_000, "only {hits} hits");
     }
 }

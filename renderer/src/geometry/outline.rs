@@ -119,14 +119,9 @@ impl Outline {
 
     /// Where the rays of a pyramid may meet the shape; `None` if they all miss it.
     pub(super) fn within(&self, pyramid: &NarrowPyramid) -> Option<Reach> {
-        let Some(along_m) = self
-            .hull
-            .iter()
-            .map(|ball| along(ball, pyramid))
-            .reduce(f64::min)
-        else {
+        if self.hull.is_empty() {
             return self.endless_within(pyramid);
-        };
+        }
         let is_beside = |inwards: &Vector| {
             let mut balls = self.hull.iter();
             balls.all(|&(center, radius_m)| center.dot(*inwards) < -(radius_m + MARGIN_M))
@@ -134,6 +129,8 @@ impl Outline {
         if pyramid.inwards.iter().any(is_beside) {
             return None;
         }
+        let along_m = self.hull.iter().map(|ball| along(ball, pyramid));
+        let along_m = along_m.fold(f64::INFINITY, f64::min);
         // A place of the pyramid that is so far along its axis is Σ λ corner with Σ λ no less than that.
         let least_m = (along_m - MARGIN_M).max(0.0);
         let is_past = |&(normal, limit_m): &(Vector, f64)| {

@@ -290,10 +290,10 @@ fn a_mesh_stands_among_other_shapes() {
     let (above, between) = (down(9.0), down(2.0));
     let nearest = |ray| {
         hierarchy
-            .nearest(ray, Span::up_to(99.0))
+            .nearest(ray, Span::up_to(99.0), None)
             .map(|(index, _)| index)
     };
     assert_eq!((nearest(&above), nearest(&between)), (Some(1), Some(0)));
-    assert!(hierarchy.is_blocked(&between, Span::up_to(1.1)));
-    assert!(!hierarchy.is_blocked(&between, Span::up_to(0.9)));
+    assert!(hierarchy.is_blocked(&between, Span::up_to(1.1), None));
+    assert!(!hierarchy.is_blocked(&between, Span::up_to(0.9), None));
 }
