@@ -28,8 +28,18 @@ impl ChannelSamples {
         }
     }
 
+    /// Adds the values of samples from `first` on, all later than those before; `None` where it was not shaded.
+    pub(crate) fn extend(&mut self, first: u32, values: impl Iterator<Item = Option<f32>>) {
+        for (sample, value) in (first..).zip(values) {
+            if let Some(value) = value {
+                self.push(sample, value);
+            }
+        }
+    }
+
     /// Adds the value of a sample later than all before.
-    pub(crate) fn push(&mut self, sample: u32, value: f32) {
+    #[inline]
+    fn push(&mut self, sample: u32, value: f32) {
         let is_gapless = self.shaded.is_empty() && self.values.len() == sample as usize;
         if !is_gapless {
             if self.shaded.is_empty() {

@@ -13,9 +13,10 @@ impl Expected {
     pub(crate) const NOTHING: Self = Self(1);
 
     /// What is not a number is nothing.
+    #[inline]
     pub(crate) fn new(variance: f32, axis: Axis) -> Self {
-        let is_x = u32::from(axis == Axis::X);
-        Self((variance.max(0.0).to_bits() << 1) | is_x)
+        let variance = if variance > 0.0 { variance } else { 0.0 };
+        Self((variance.to_bits() << 1) | u32::from(axis == Axis::X))
     }
 
     pub(crate) const fn variance(self) -> f32 {
@@ -30,12 +31,14 @@ impl Expected {
 /// What two neighbours whose samples have this variance lead to expect in each other, `f² variance`.
 ///
 /// `share` is the part `f` of the way between the samples that lies in the first.
+#[inline]
 pub(crate) fn expected_variances(variance: f32, share: f32) -> [f32; 2] {
     [share, 1.0 - share].map(|share| variance * share * share)
 }
 
 /// The part of the way from one sample to its neighbour's that lies on its own side of the border, from the
 /// places of all three along the axis.
+#[inline]
 pub(crate) fn share(border: u32, [own, other]: [u32; 2]) -> f32 {
     let way = |to: u32| (i64::from(to) - i64::from(own)) as f32;
     let share = way(border) / way(other);

@@ -33,6 +33,12 @@ impl GridCell {
         })
     }
 
+    /// The places of its left, right, upper and lower side; 0 where it ends with the screen.
+    pub(crate) fn sides(self) -> [u32; 4] {
+        let ([left, top], [right, bottom]) = (self.from, self.ends());
+        [left, right, top, bottom]
+    }
+
     /// The first step of its second half along an axis.
     pub(crate) const fn middle(self, axis: Axis) -> u32 {
         let along = axis as usize;

@@ -40,7 +40,7 @@ impl LeafMap {
         let mut map = Self {
             halvings: [0; 2],
             finest,
-            leaves: Vec::new(),
+            leaves: vec![0],
         };
         map.resize(1);
         map
@@ -79,6 +79,10 @@ impl LeafMap {
         let size = blocks[0].min(blocks[1]);
         let first = self.square(cell.from).map(|number| number >> size);
         let [columns, rows] = blocks.map(|block| 1 << (block - size));
+        if [size, columns, rows] == [0, 1, 1] {
+            self.leaves[place(first)] = leaf;
+            return;
+        }
         for row in 0..rows {
             for column in 0..columns {
                 let start = place([first[0] + column, first[1] + row]) << (2 * size);
@@ -95,6 +99,7 @@ impl LeafMap {
 
     /// The leaves beyond the middles of the left, right, upper and lower side of a leaf, as far as the map knows;
     /// the leaf itself where the screen ends.
+    #[inline]
     pub(crate) fn around(&self, leaf: u32, cell: GridCell) -> [u32; 4] {
         let ([left, top], [right, bottom]) = (cell.from, cell.ends());
         let middle = [Axis::X, Axis::Y].map(|axis| cell.middle(axis));

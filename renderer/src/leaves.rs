@@ -29,7 +29,7 @@ use crate::priority::{CLASSES, DUE, NEVER, PriorityRule};
 use crate::refine::TracePlan;
 use crate::round::round;
 use crate::sampler::GridPoint;
-use crate::screen_tree::{NewSample, Split};
+use crate::screen_tree::{NewLeaf, NewSample, Split};
 
 /// One leaf in this many is split in a round.
 const SHARE: usize = 16;
@@ -82,13 +82,11 @@ struct Half {
 /// The axes on which the neighbours lie.
 const SIDES: [Axis; 4] = [Axis::X, Axis::X, Axis::Y, Axis::Y];
 
-/// What a leaf and a neighbour lead to expect in each other.
+/// What a leaf and its neighbours lead to expect in each other.
 #[derive(Clone, Copy, Debug)]
-struct Meeting {
+struct Meetings {
     here: Expected,
-    there: Expected,
-    /// The part of the way between the samples that lies here.
-    share: f32,
+    there: [Expected; 4],
 }
 
 /// The leaves of a tree.
@@ -190,22 +188,29 @@ impl Leaves {
             0 => (self.known.len() / SHARE).max(1),
             due => due,
         };
+        let leaves = as_number(self.places.len());
         if self.doubts.is_none() {
-            let classes = self.places.iter().map(|place| place.class);
-            return round(classes, &self.counts, wanted);
+            let places = &self.places;
+            return round(
+                leaves,
+                |leaf| places[leaf as usize].class,
+                &self.counts,
+                wanted,
+            );
         }
         let unknown = self.learn();
-        let classes = self.places.iter().map(|place| place.class);
-        let classes = classes.zip(unknown).map(|(class, is_unknown)| {
-            let rests = !is_unknown && class != DUE;
-            if rests { NEVER } else { class }
-        });
-        let classes: Vec<u16> = classes.collect();
+        let classes = self.places.iter().zip(unknown);
+        let classes: Vec<u16> = classes
+            .map(|(place, is_unknown)| {
+                let rests = !is_unknown && place.class != DUE;
+                if rests { NEVER } else { place.class }
+            })
+            .collect();
         let mut counts = vec![0; CLASSES];
         for &class in &classes {
             counts[usize::from(class)] += 1;
         }
-        round(classes.into_iter(), &counts, wanted)
+        round(leaves, |leaf| classes[leaf as usize], &counts, wanted)
     }
 
     /// Whether each leaf lies in a region that is not known, if that is asked.
@@ -250,12 +255,10 @@ impl Leaves {
 
     /// Splits a leaf: its sample keeps its half, a new one is in the other. Both have no class before they
     /// [look around](Self::look_around).
-    ///
-    /// `nodes` are those of the old sample's half and of the new one's.
-    pub(crate) fn split(&mut self, split: &Split, new: &NewSample, nodes: [u32; 2]) {
-        let [old_node, new_node] = nodes;
+    pub(crate) fn split(&mut self, NewLeaf { split, sample }: &NewLeaf) {
         let old = split.leaf as usize;
         let number = as_number(self.known.len());
+        let [old_node, new_node] = split.nodes(number);
         let halvings = split.free_half.halvings;
         self.halved.push(Halved {
             old: split.leaf,
@@ -269,10 +272,11 @@ impl Leaves {
             doubts.variances[old] = 0.0;
         }
         self.map.enter(number, split.free_half);
-        self.push(new, halvings, new_node);
+        self.push(sample, halvings, new_node);
     }
 
     /// Puts a leaf into the class that it has now.
+    #[inline]
     fn classify(&mut self, leaf: u32) {
         let leaf = leaf as usize;
         let place = &mut self.places[leaf];
@@ -303,7 +307,7 @@ impl Leaves {
                         }
                     }),
             );
-            let mut meetings = ArrayVec::<[Meeting; 4], AT_ONCE>::new();
+            let mut meetings = ArrayVec::<Meetings, AT_ONCE>::new();
             meetings.extend(halves.iter().map(|half| self.meetings(half)));
             for (half, meetings) in halves.iter().zip(&meetings) {
                 self.take_in(half, meetings);
@@ -317,42 +321,52 @@ impl Leaves {
     }
 
     /// What a leaf and its neighbours lead to expect in each other.
-    fn meetings(&self, half: &Half) -> [Meeting; 4] {
+    #[inline]
+    fn meetings(&self, half: &Half) -> Meetings {
         let Half { own, cell, around } = *half;
-        let GridPoint(point) = self.known[own as usize].point;
-        let ([left, top], [right, bottom]) = (cell.from, cell.ends());
-        let borders = [left, right, top, bottom];
-        std::array::from_fn(|side| {
-            let other = around[side];
-            let axis = SIDES[side];
-            let GridPoint(there) = self.known[other as usize].point;
-            let share = share(
-                borders[side],
-                [point, there].map(|point| point[axis as usize]),
-            );
-            let variances = expected_variances(self.variance(own, other), share);
-            let [here, there] = variances.map(|variance| Expected::new(variance, axis));
-            Meeting { here, there, share }
-        })
+        let own_known = self.known[own as usize];
+        let borders = cell.sides();
+        let mut meetings = Meetings {
+            here: Expected::NOTHING,
+            there: [Expected::NOTHING; 4],
+        };
+        for (side, axis) in SIDES.into_iter().enumerate() {
+            let known = self.known[around[side] as usize];
+            let variance = match &self.colours {
+                Some(Colours { are_drivers, .. }) if *are_drivers => {
+                    self.variance(own, around[side])
+                }
+                _ => halved_square(own_known.shown - known.shown),
+            };
+            let places = [own_known, known].map(|known| known.point.0[axis as usize]);
+            let [here, there] = expected_variances(variance, share(borders[side], places));
+            meetings.here = meetings.here.max(Expected::new(here, axis));
+            meetings.there[side] = Expected::new(there, axis);
+        }
+        meetings
     }
 
     /// Enters what a leaf and its neighbours met.
-    fn take_in(&mut self, half: &Half, meetings: &[Meeting; 4]) {
-        let mut expected = self.known[half.own as usize].expected;
-        for (&other, meeting) in half.around.iter().zip(meetings) {
-            expected = expected.max(meeting.here);
-            // A leaf beyond which the screen ends meets itself, without a difference.
-            let known = &mut self.known[other as usize];
-            if meeting.there > known.expected {
-                known.expected = meeting.there;
-                self.classify(other);
-            }
-            if self.doubts.is_some() {
-                self.doubt([half.own, other], meeting.share);
-            }
+    #[inline]
+    fn take_in(&mut self, half: &Half, meetings: &Meetings) {
+        // A leaf beyond which the screen ends meets itself, without a difference.
+        for (&other, &there) in half.around.iter().zip(&meetings.there) {
+            self.raise(other, there);
         }
-        self.known[half.own as usize].expected = expected;
+        let expected = &mut self.known[half.own as usize].expected;
+        *expected = meetings.here.max(*expected);
         self.classify(half.own);
+        if self.doubts.is_some() {
+            self.doubt(half);
+        }
+    }
+
+    fn raise(&mut self, leaf: u32, expected: Expected) {
+        let known = &mut self.known[leaf as usize];
+        if expected > known.expected {
+            known.expected = expected;
+            self.classify(leaf);
+        }
     }
 
     /// Where the map is too coarse to show the halves, they are expected to be as the whole was, or as they differ.
@@ -364,24 +378,25 @@ impl Leaves {
         let variance = self.variance(old, new).max(INHERITED * expected.variance());
         let inherited = Expected::new(variance, expected.axis());
         for half in [old, new] {
-            let known = &mut self.known[half as usize];
-            if inherited > known.expected {
-                known.expected = inherited;
-                self.classify(half);
-            }
+            self.raise(half, inherited);
         }
     }
 
-    fn doubt(&mut self, leaves: [u32; 2], share: f32) {
+    /// The same as [`Self::meetings`] in the channel that is to be known.
+    fn doubt(&mut self, half: &Half) {
         let Some(doubts) = &mut self.doubts else {
             return;
         };
-        let differences = differences(&self.known, self.colours.as_ref(), leaves);
-        let doubt = halved_square(differences[doubts.channel]);
-        let expected = expected_variances(doubt, share);
-        for (leaf, expected) in leaves.into_iter().zip(expected) {
-            let variance = &mut doubts.variances[leaf as usize];
-            *variance = variance.max(expected);
+        for (side, axis) in SIDES.into_iter().enumerate() {
+            let leaves = [half.own, half.around[side]];
+            let places = leaves.map(|leaf| self.known[leaf as usize].point.0[axis as usize]);
+            let differences = differences(&self.known, self.colours.as_ref(), leaves);
+            let doubt = halved_square(differences[doubts.channel]);
+            let expected = expected_variances(doubt, share(half.cell.sides()[side], places));
+            for (leaf, expected) in leaves.into_iter().zip(expected) {
+                let variance = &mut doubts.variances[leaf as usize];
+                *variance = variance.max(expected);
+            }
         }
     }
 

@@ -20,7 +20,7 @@ use crate::confidence::Confidence;
 use crate::leaves::Leaves;
 use crate::priority::PriorityRule;
 use crate::sampler::{GridPoint, Sampler, ScreenPoint};
-use crate::screen_tree::{NewSample, Reach, ScreenTree, Split};
+use crate::screen_tree::{NewLeaf, NewSample, Reach, ScreenTree, Split};
 
 /// Samples taken between two reports of progress: a round is taken in pieces of this many.
 const BATCH: usize = 4096;
@@ -133,9 +133,9 @@ pub(crate) fn trace_from<S: Sampler>(
             }
             let todo = (&leaves, tree.len(), batch);
             sample_batch(sampler, plan, todo, taken, &mut new);
+            tree.split(&new);
             for new in &new {
-                let nodes = tree.split(&new.split, &new.sample);
-                leaves.split(&new.split, &new.sample, nodes);
+                leaves.split(new);
             }
             progress(tree.len() as u64, rays as u64);
         }
@@ -182,13 +182,6 @@ impl Probe {
             values: PerChannel::from_fn(|c| self.is_shaded[c].then_some(taken[c])),
         }
     }
-}
-
-/// A new sample, and the leaf that is split for it.
-#[derive(Clone, Copy, Debug, Default)]
-struct NewLeaf {
-    split: Split,
-    sample: NewSample,
 }
 
 /// Finds the new samples of a batch of leaves, in its order, taken on all threads or recalled.

@@ -5,36 +5,37 @@ use crate::priority::{DUE, NEVER};
 /// The leaves of the highest classes, `wanted` of them or as many as may be split; the highest class first,
 /// and within a class the older leaf.
 ///
-/// `counts` is how many leaves each class has.
+/// `leaves` is how many leaves there are, and `counts` how many each class has.
 pub(crate) fn round(
-    classes: impl ExactSizeIterator<Item = u16>,
+    leaves: u32,
+    class: impl Fn(u32) -> u16,
     counts: &[usize],
     wanted: usize,
 ) -> Vec<u32> {
     // Where each class begins in the round; the lowest may be cut short.
     let mut begins = vec![0; counts.len()];
     let (mut end, mut lowest) = (0, DUE);
-    for class in (NEVER + 1..=DUE).rev() {
-        let place = usize::from(class);
+    for highest in (NEVER + 1..=DUE).rev() {
+        let place = usize::from(highest);
         if end >= wanted {
             break;
         }
         begins[place] = end;
         end += counts[place];
-        lowest = class;
+        lowest = highest;
     }
-    let mut chosen = vec![(0, NEVER); end + 1];
+    let mut chosen = vec![0; end + 1];
     let mut found = 0;
-    for (leaf, class) in (0_u32..).zip(classes) {
+    for leaf in 0..leaves {
         // Each is written; the next one takes the place of one that is not chosen.
-        chosen[found] = (leaf, class);
-        found += usize::from(class >= lowest);
+        chosen[found] = leaf;
+        found += usize::from(class(leaf) >= lowest);
     }
     let mut round = vec![0; end];
-    for &(leaf, class) in &chosen[..found] {
-        let place = &mut begins[usize::from(class)];
-        round[*place] = leaf;
-        *place += 1;
+    for &leaf in &chosen[..found] {
+        let begin = &mut begins[usize::from(class(leaf))];
+        round[*begin] = leaf;
+        *begin += 1;
     }
     round.truncate(wanted);
     round
@@ -65,7 +66,7 @@ mod tests {
             sorted.retain(|&leaf| classes[leaf as usize] != NEVER);
             sorted.sort_by_key(|&leaf| std::cmp::Reverse(classes[leaf as usize]));
             for wanted in [1, 31, 200, sorted.len(), 500] {
-                let found = round(classes.iter().copied(), &counts, wanted);
+                let found = round(500, |leaf| classes[leaf as usize], &counts, wanted);
                 assert_eq!(found, sorted[..wanted.min(sorted.len())]);
             }
         }

@@ -151,6 +151,13 @@ pub(crate) struct NewSample {
     pub(crate) values: PerChannel<Option<f32>>,
 }
 
+/// A new sample, and the leaf that is split for it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct NewLeaf {
+    pub(crate) split: Split,
+    pub(crate) sample: NewSample,
+}
+
 /// How a leaf is to be split.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Split {
@@ -162,6 +169,18 @@ pub(crate) struct Split {
     pub(crate) half: usize,
     /// That half.
     pub(crate) free_half: GridCell,
+}
+
+impl Split {
+    /// The nodes of the old sample's half and of the new one's, the sample of this number.
+    pub(crate) const fn nodes(&self, new: u32) -> [u32; 2] {
+        let second = 2 * new;
+        if self.half == 0 {
+            [second, second - 1]
+        } else {
+            [second - 1, second]
+        }
+    }
 }
 
 impl ScreenTree {
@@ -182,33 +201,31 @@ impl ScreenTree {
             points: Vec::with_capacity(rays),
             unknown_area: None,
         };
-        tree.store(first);
+        tree.store(&[NewLeaf {
+            split: Split::default(),
+            sample: *first,
+        }]);
         tree
     }
 
-    /// Splits a leaf: its sample keeps the half that it lies in, `new` goes into the other.
-    ///
-    /// Gives the node of the old sample's half and that of the new one's.
-    pub(crate) fn split(&mut self, split: &Split, new: &NewSample) -> [u32; 2] {
-        let node = Node::split_by(as_index(self.points.len()), split.half, split.axis);
-        self.nodes[split.node as usize] = node;
-        self.nodes.extend([Node::LEAF; 2]);
-        self.store(new);
-        let [first, second] = node.children();
-        if split.half == 0 {
-            [second, first]
-        } else {
-            [first, second]
+    /// Splits leaves, one after the other: the sample keeps the half that it lies in, the new one goes into the
+    /// other.
+    pub(crate) fn split(&mut self, new: &[NewLeaf]) {
+        let first = as_index(self.points.len());
+        for (sample, NewLeaf { split, .. }) in (first..).zip(new) {
+            self.nodes[split.node as usize] = Node::split_by(sample, split.half, split.axis);
         }
+        self.nodes
+            .resize(self.nodes.len() + 2 * new.len(), Node::LEAF);
+        self.store(new);
     }
 
-    fn store(&mut self, new: &NewSample) {
-        let sample = as_index(self.points.len());
-        self.points.push(new.point);
+    fn store(&mut self, new: &[NewLeaf]) {
+        let first = as_index(self.points.len());
+        self.points.extend(new.iter().map(|new| new.sample.point));
         for channel in Channel::ALL {
-            if let Some(value) = new.values[channel] {
-                self.samples[channel].push(sample, value);
-            }
+            let values = new.iter().map(|new| new.sample.values[channel]);
+            self.samples[channel].extend(first, values);
         }
     }
 
