@@ -8,26 +8,38 @@ use protocols::Study;
 use crate::command_line::{AnovaArguments, BesideAnova, ReportArguments};
 use crate::console;
 use crate::follow_up;
+use crate::predict::default_file;
 
 pub(crate) fn report(arguments: &ReportArguments) -> anyhow::Result<()> {
     let study = Study::read(&arguments.protocol)?;
     let data = arguments.data.of(&study);
+    let out = arguments.out.as_deref();
+    let predictions = arguments.predictions.as_deref();
     let pilots = if arguments.include_pilot {
         Pilots::Included
     } else {
         Pilots::LeftOut
     };
-    write_report(&study, &data, arguments.out.as_deref(), pilots)
+    write_report(&study, &data, Place { out, predictions }, pilots)
+}
+
+/// Where a report goes and which predictions it shows, if not the usual ones.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Place<'a> {
+    out: Option<&'a Path>,
+    predictions: Option<&'a Path>,
 }
 
 /// Writes the report and prints its warnings, its test statistics and, last, its path.
 pub(crate) fn write_report(
     study: &Study,
     data: &Path,
-    out: Option<&Path>,
+    place: Place<'_>,
     pilots: Pilots,
 ) -> anyhow::Result<()> {
-    let summary = analysis::report(study, data, out, pilots)?;
+    let usual = Some(default_file(study)).filter(|file| file.is_file());
+    let predictions = place.predictions.or(usual.as_deref());
+    let summary = analysis::report_beside(study, data, place.out, pilots, predictions)?;
     for warning in &summary.warnings {
         console::print(format!("warning: {warning}"))?;
     }

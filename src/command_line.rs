@@ -44,6 +44,8 @@ pub(crate) enum Command {
     Export(ExportArguments),
     /// Let simulated observers sit the same session.
     Simulate(SimulateArguments),
+    /// Which ratings do two models of vision expect? The report draws them beside those that were given.
+    Predict(PredictArguments),
     /// How many subjects does the study need? Simulated studies of each size, analysed as the protocol says.
     Power(PowerArguments),
     /// Analyse the ratings of a study and write the report.
@@ -284,6 +286,17 @@ pub(crate) struct SimulateArguments {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct PredictArguments {
+    /// The protocol file.
+    pub(crate) protocol: PathBuf,
+    #[command(flatten)]
+    pub(crate) stimuli: StimuliFolder,
+    /// The file of the predictions [default: reports/STUDY-predicted/predictions.csv]
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct PowerArguments {
     /// The protocol file.
     pub(crate) protocol: PathBuf,
@@ -380,6 +393,9 @@ pub(crate) struct ReportArguments {
     /// Folder for the report [default: reports/STUDY, or reports/STUDY-simulated]
     #[arg(long)]
     pub(crate) out: Option<PathBuf>,
+    /// Predictions to draw beside the ratings [default: reports/STUDY-predicted/predictions.csv, if it is there]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) predictions: Option<PathBuf>,
     /// Analyse trial runs (`run --pilot`) too.
     #[arg(long)]
     pub(crate) include_pilot: bool,

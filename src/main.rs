@@ -12,6 +12,7 @@ mod image;
 mod interrupt;
 mod memory;
 mod power;
+mod predict;
 mod render;
 mod replicate;
 mod sit;
@@ -51,6 +52,7 @@ fn run(command: Command, progress: Progress) -> anyhow::Result<ExitCode> {
         Command::Station(arguments) => station::measure(&arguments)?,
         Command::Export(arguments) => sit::export(&arguments)?,
         Command::Simulate(arguments) => sit::simulate(&arguments, progress)?,
+        Command::Predict(arguments) => predict::predict(&arguments)?,
         Command::Power(arguments) => power::power(&arguments, progress)?,
         Command::Report(arguments) => analyse::report(&arguments)?,
         Command::Anova(arguments) => analyse::anova(&arguments)?,

@@ -3,7 +3,7 @@
 use analysis::Pilots;
 use protocols::{Observer, Study};
 
-use crate::analyse::write_report;
+use crate::analyse::{Place, write_report};
 use crate::command_line::ReplicateArguments;
 use crate::console::Progress;
 use crate::render::make_set;
@@ -21,5 +21,5 @@ pub(crate) fn replicate(arguments: &ReplicateArguments, progress: Progress) -> a
         seed: arguments.seed,
     };
     rate_by_model(&study, (&stimuli, &data), observers, progress)?;
-    write_report(&study, &data, None, Pilots::LeftOut)
+    write_report(&study, &data, Place::default(), Pilots::LeftOut)
 }

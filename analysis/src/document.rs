@@ -54,6 +54,14 @@ pub(crate) enum Block {
     },
 }
 
+impl Document {
+    /// Puts a section before the last one, which says where all comes from.
+    pub(crate) fn add_before_last(&mut self, section: Section) {
+        let place = self.sections.len().saturating_sub(1);
+        self.sections.insert(place, section);
+    }
+}
+
 impl Section {
     pub(crate) const fn new(heading: &'static str) -> Self {
         Self {

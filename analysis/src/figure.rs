@@ -60,17 +60,8 @@ pub(crate) struct Figure<'a> {
 impl Figure<'_> {
     /// The figure as an SVG document.
     pub(crate) fn to_svg(&self) -> String {
-        let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" \
-             aria-label=\"Mean rating against ray count for the achromatic and the chromatic sequence\" \
-             font-family=\"Ubuntu, 'Helvetica Neue', Helvetica, Arial, sans-serif\" font-size=\"13\">\n"
-        );
-        let paper = self.palette.paper;
-        // Writing to a `String` cannot fail, here and below.
-        _ = writeln!(
-            svg,
-            "<rect width=\"{WIDTH}\" height=\"{HEIGHT}\" style=\"fill:{paper}\"/>"
-        );
+        let mut svg = self
+            .opened("Mean rating against ray count for the achromatic and the chromatic sequence");
         self.axes(&mut svg);
         self.plateaus(&mut svg);
         self.legend(&mut svg); // Below the curves, so that it never hides a rating.
@@ -81,7 +72,17 @@ impl Figure<'_> {
         svg
     }
 
-    fn x(&self, rays: RayCount) -> f64 {
+    /// The beginning of a document with this description, and its paper.
+    pub(crate) fn opened(&self, label: &str) -> String {
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{label}\" \
+             font-family=\"Ubuntu, 'Helvetica Neue', Helvetica, Arial, sans-serif\" font-size=\"13\">\n\
+             <rect width=\"{WIDTH}\" height=\"{HEIGHT}\" style=\"fill:{}\"/>\n",
+            self.palette.paper
+        )
+    }
+
+    pub(crate) fn x(&self, rays: RayCount) -> f64 {
         self.x_of(f64::from(rays.get()))
     }
 
@@ -99,13 +100,13 @@ impl Figure<'_> {
         (RIGHT - LEFT - 2.0 * inset).mul_add(share, LEFT + inset)
     }
 
-    fn y(&self, rating: f64) -> f64 {
+    pub(crate) fn y(&self, rating: f64) -> f64 {
         let (lowest, highest) = (f64::from(self.scale.lowest), f64::from(self.scale.highest));
         let share = (rating - lowest) / (highest - lowest);
         (BOTTOM - TOP).mul_add(-share, BOTTOM)
     }
 
-    fn axes(&self, svg: &mut String) {
+    pub(crate) fn axes(&self, svg: &mut String) {
         let Palette { ink, faint, .. } = self.palette;
         let step = if self.scale.highest - self.scale.lowest > 5 {
             2
@@ -321,15 +322,15 @@ impl Figure<'_> {
 }
 
 /// How a curve looks.
-struct CurveStyle {
+pub(crate) struct CurveStyle {
     group: ChannelGroup,
-    color: &'static str,
+    pub(crate) color: &'static str,
     dash: &'static str,
     dodge: f64,
 }
 
 impl CurveStyle {
-    fn of(group: ChannelGroup, palette: Palette) -> Self {
+    pub(crate) fn of(group: ChannelGroup, palette: Palette) -> Self {
         match group {
             ChannelGroup::Chromatic => Self {
                 group,
@@ -347,7 +348,7 @@ impl CurveStyle {
     }
 
     /// A filled square, or an open diamond.
-    fn marker(&self, svg: &mut String, x: f64, y: f64, palette: Palette) {
+    pub(crate) fn marker(&self, svg: &mut String, x: f64, y: f64, palette: Palette) {
         let (path, fill) = match self.group {
             ChannelGroup::Chromatic => (
                 format!("M{:.2},{:.2}h9v9h-9z", x - 4.5, y - 4.5),

@@ -56,6 +56,9 @@ mod power;
 mod power_design;
 mod power_figure;
 mod power_text;
+mod predicted_figure;
+mod prediction_section;
+mod predictions;
 mod printed_df;
 mod ranks;
 mod report;
@@ -96,7 +99,7 @@ pub use power::{AsymptoteWidth, EffectPower, Power, PowerPoint, PowerSettings, p
 pub use power_design::{EffectScale, PowerDesign};
 pub use printed_df::{AllowedDesign, PrintedF};
 pub use ranks::{AlignedRankEffect, Friedman};
-pub use report::{ReportSummary, report};
+pub use report::{ReportSummary, report, report_beside};
 pub use row_filter::{FilterKind, RowFilter};
 pub use screening::{IntraclassCorrelation, Observer, ObserverModel, ObserverScreening, Opinion};
 pub use sphericity::{Epsilons, Mauchly, Sphericity};

@@ -16,6 +16,7 @@ use crate::figure::{Figure, Palette};
 use crate::picture::FigurePicture;
 use crate::picture_analysis::PictureAnalysis;
 use crate::picture_sections;
+use crate::predictions::Predictions;
 use crate::sections::Sections;
 use crate::study_analysis::{StudyAnalysis, analysed_scale};
 use crate::study_ratings::{Pilots, StudyRatings};
@@ -55,10 +56,26 @@ pub fn report(
     out_dir: Option<&Path>,
     pilots: Pilots,
 ) -> Result<ReportSummary, AnalysisError> {
+    report_beside(study, data_dir, out_dir, pilots, None)
+}
+
+/// The same report, with the file of predictions that `acuity predict` wrote drawn beside the ratings.
+///
+/// # Errors
+///
+/// As [`report`], and predictions that cannot be read.
+pub fn report_beside(
+    study: &Study,
+    data_dir: &Path,
+    out_dir: Option<&Path>,
+    pilots: Pilots,
+    predictions: Option<&Path>,
+) -> Result<ReportSummary, AnalysisError> {
     let ratings = StudyRatings::read(study, data_dir, pilots)?;
+    let predictions = predictions.map(Predictions::read).transpose()?;
     let Contents { anova_of, files } = match study.protocol.stimuli {
-        Stimuli::Rendered(_) => of_rendered(study, &ratings)?,
-        Stimuli::Pictures(_) => of_pictures(study, &ratings)?,
+        Stimuli::Rendered(_) => of_rendered(study, &ratings, predictions.as_ref())?,
+        Stimuli::Pictures(_) => of_pictures(study, &ratings, predictions.as_ref())?,
     };
     let out_dir = out_dir.map_or_else(
         || study.default_report_dir(ratings.observer),
@@ -88,42 +105,54 @@ struct Contents {
     files: Vec<(String, Vec<u8>)>,
 }
 
-fn of_rendered(study: &Study, ratings: &StudyRatings) -> Result<Contents, AnalysisError> {
+fn of_rendered(
+    study: &Study,
+    ratings: &StudyRatings,
+    predictions: Option<&Predictions>,
+) -> Result<Contents, AnalysisError> {
     let analysis = StudyAnalysis::new(study, ratings)?;
     let who = ratings.who(analysis.subjects.len());
     let means = (analysis.conditions.iter())
         .map(|condition| (condition.mean, condition.half_within.unwrap_or(0.0)));
     let scale = figure_scale(study, means);
-    let figure = |palette: Palette| {
-        let figure = Figure {
-            analysis: &analysis,
-            scale,
-            confidence: study.protocol.analysis.confidence,
-            who: &who,
-            palette,
-        };
-        figure.to_svg()
+    let figure = |palette: Palette| Figure {
+        analysis: &analysis,
+        scale,
+        confidence: study.protocol.analysis.confidence,
+        who: &who,
+        palette,
     };
     let sections = Sections {
         study,
         ratings,
         analysis: &analysis,
-        figure_svg: &figure(Palette::PAGE),
+        figure_svg: &figure(Palette::PAGE).to_svg(),
     };
     let means = means_csv(&analysis, study.protocol.analysis.confidence);
-    let files = files(
-        &sections,
-        &sections.document(),
-        means,
-        figure(Palette::PRINT),
-    )?;
+    let mut document = sections.document();
+    let print = figure(Palette::PRINT);
+    let mut more = Vec::new();
+    if let Some(predictions) = predictions {
+        let of_page = figure(Palette::PAGE).with_predictions(predictions);
+        document.add_before_last(sections.predicted(predictions, Some(&of_page)));
+        let svg = print.with_predictions(predictions);
+        let png = FigurePicture::new(&svg)?.to_png()?;
+        more.push(("figure-predicted.png".to_owned(), png));
+        more.push(("figure-predicted.svg".to_owned(), svg.into_bytes()));
+    }
+    let mut files = files(&sections, &document, means, print.to_svg())?;
+    files.extend(more);
     Ok(Contents {
         anova_of: analysis,
         files,
     })
 }
 
-fn of_pictures(study: &Study, ratings: &StudyRatings) -> Result<Contents, AnalysisError> {
+fn of_pictures(
+    study: &Study,
+    ratings: &StudyRatings,
+    predictions: Option<&Predictions>,
+) -> Result<Contents, AnalysisError> {
     let pictures = PictureAnalysis::new(study, ratings)?;
     let means = (pictures.cells.iter())
         .map(|cell| (cell.summary.mean, cell.summary.half_within.unwrap_or(0.0)));
@@ -142,7 +171,10 @@ fn of_pictures(study: &Study, ratings: &StudyRatings) -> Result<Contents, Analys
         analysis: &pictures.study,
         figure_svg: &figure(Palette::PAGE),
     };
-    let document = sections.document_of_pictures(&pictures);
+    let mut document = sections.document_of_pictures(&pictures);
+    if let Some(predictions) = predictions {
+        document.add_before_last(sections.predicted(predictions, None));
+    }
     let means = picture_sections::means_csv(study, &pictures);
     let files = files(&sections, &document, means, figure(Palette::PRINT))?;
     Ok(Contents {

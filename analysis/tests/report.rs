@@ -7,7 +7,9 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use analysis::{AnalysisError, Design, Pilots, ReportSummary, anova_of_table, report};
+use analysis::{
+    AnalysisError, Design, Pilots, ReportSummary, anova_of_table, report, report_beside,
+};
 use protocols::{Observer, Study};
 use simulated_study::{paper, session, write_people, write_session};
 use tempfile::TempDir;
@@ -601,4 +603,41 @@ fn deviations_are_named_and_their_absence_too() {
         assert!(page.contains(said), "{said}");
     }
     assert!(page.contains("DP-1, 1920 × 1080 pixels, at 101.6 cm, linux"));
+}
+
+#[test]
+fn predictions_stand_beside_the_ratings() {
+    let trial = Trial::with_people(4);
+    trial.report().unwrap();
+    assert!(!trial.page().contains("Predicted before"));
+    // The means themselves as one model's prediction, one step more as the other's.
+    let means = fs::read_to_string(trial.out().join("means.csv")).unwrap();
+    let mut text = String::from("stimulus_id,cvvdp_rating,scielab_rating,manifest_sha256\n");
+    for line in means.lines().skip(1) {
+        let fields: Vec<&str> = line.split(',').collect();
+        let mean: f64 = fields[4].parse().unwrap();
+        writeln!(text, "{},{mean},{},abc", fields[0], mean + 1.0).unwrap();
+    }
+    let file = trial.folder.path().join("predictions.csv");
+    fs::write(&file, text).unwrap();
+    let out = trial.out();
+    report_beside(
+        &trial.study,
+        &trial.data(),
+        Some(&out),
+        Pilots::LeftOut,
+        Some(&file),
+    )
+    .unwrap();
+    let page = trial.page();
+    for row in [
+        "<td>ColorVideoVDP</td><td>27</td><td>1.000</td><td>0.00</td><td>0.00</td>",
+        "<td>S-CIELAB</td><td>27</td><td>1.000</td><td>1.00</td><td>1.00</td>",
+    ] {
+        assert!(page.contains(row), "{row}");
+    }
+    let svg = fs::read_to_string(out.join("figure-predicted.svg")).unwrap();
+    // Two lines for each curve; a mark for each of 14 counts on both, and one in the legend.
+    assert_eq!(svg.matches("<polyline").count(), 4);
+    assert_eq!(svg.matches("h9v9h-9z").count(), 15);
 }
