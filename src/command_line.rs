@@ -247,6 +247,15 @@ pub(crate) struct StationArguments {
     /// Lights and surround, in words.
     #[arg(long)]
     pub(crate) surround: Option<String>,
+    /// The monitor's ICC profile (primaries and curves) [default: sRGB by declaration]
+    #[arg(long, value_name = "FILE", conflicts_with = "primaries")]
+    pub(crate) icc: Option<PathBuf>,
+    /// Chromaticities by a colorimeter: x,y of red, green, blue and white.
+    #[arg(long, value_name = "X,Y,...", value_delimiter = ',', num_args = 8)]
+    pub(crate) primaries: Option<Vec<f64>>,
+    /// Exponent of the measured transfer curve [default: the curve of sRGB]
+    #[arg(long, requires = "primaries")]
+    pub(crate) gamma: Option<f64>,
     /// The station's file [default: ~/.config/acuity/station.toml]
     #[arg(short, long)]
     pub(crate) out: Option<PathBuf>,

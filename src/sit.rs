@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use experiment::RunOptions;
+use experiment::{RunOptions, StationFile, StimulusSet};
 use protocols::{DataSet, InputError, Observer, Study};
 use renderer::Scene;
 
@@ -27,11 +27,14 @@ pub(crate) fn check(arguments: &CheckArguments) -> anyhow::Result<ExitCode> {
     let data = arguments.data.of(&study);
     let mut missing = experiment::check_ready(&study, &stimuli, &data);
     match experiment::station_for(&study, arguments.station.as_deref()) {
-        Ok(Some(station)) => console::print(format!(
-            "station: {}",
-            station.advice(study.protocol.viewing)
-        ))?,
-        Ok(None) => console::print("station: not measured (acuity station)")?,
+        Ok(Some(station)) => {
+            for line in station_lines(&study, &stimuli, &station) {
+                console::print(line)?;
+            }
+        }
+        Ok(None) => console::print(
+            "station: not measured (acuity station); colour: sRGB by declaration, nothing was measured",
+        )?,
         Err(error) => missing.push(error.to_string()),
     }
     if missing.is_empty() {
@@ -42,6 +45,36 @@ pub(crate) fn check(arguments: &CheckArguments) -> anyhow::Result<ExitCode> {
         console::print(format!("not ready: {line}"))?;
     }
     Ok(ExitCode::from(2))
+}
+
+/// What is known of the screen and the room, a line each.
+fn station_lines(study: &Study, stimuli: &Path, station: &StationFile) -> Vec<String> {
+    let advice = station.advice(study.protocol.viewing);
+    let peak = station
+        .peak_luminance_cd_m2
+        .map_or_else(|| "not measured".to_owned(), |peak| format!("{peak} cd/m2"));
+    let surround = station.surround.as_deref().unwrap_or("not noted");
+    let mut lines = vec![
+        format!("station: {advice}"),
+        format!("colour: {}", station.color.in_words()),
+        format!("peak luminance: {peak} (ITU-R BT.500 advises 70 to 250 in a laboratory)"),
+        format!("lights and surround: {surround} (BT.500: dim, a background of 15 % of the peak)"),
+    ];
+    let set = StimulusSet::read(study, stimuli).and_then(|set| {
+        let display = station.display()?;
+        set.for_display(study, stimuli, &display)
+    });
+    // What is wrong with the set is said below, among what is not ready.
+    if let Ok((set, lacking)) = set {
+        let clipped = lacking.values().filter(|&&count| count > 0).count();
+        if let Some((id, most)) = lacking.iter().max_by_key(|(_, count)| **count) {
+            let whole = set.images().len();
+            lines.push(format!(
+                "gamut: {clipped} of {whole} images have pixels that this display lacks, {id} the most ({most})"
+            ));
+        }
+    }
+    lines
 }
 
 /// What a scene asks for in vain, by name.

@@ -3,11 +3,13 @@
 //! It is written before the first rating, and again when a sitting ends. A sitting without an end was
 //! cut off: by a crash, or by the mains.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
 use protocols::{
-    Access, InputError, Observer, ReadError, Sha256Digest, Study, SubjectId, write_atomically,
+    Access, InputError, Observer, ReadError, Sha256Digest, StimulusId, Study, SubjectId,
+    write_atomically,
 };
 use serde::{Deserialize, Serialize};
 
@@ -113,6 +115,13 @@ pub(crate) struct Station {
     /// How many pixels of the window were found equal to the images before the first screen.
     #[serde(default)]
     pub(crate) compared_px: u64,
+    /// For each image how many pixels the display's gamut lacks; empty where the display is sRGB by declaration
+    /// (the manifest has the counts of sRGB).
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(crate) out_of_gamut_px: BTreeMap<StimulusId, u64>,
+    /// The luminance of the stimuli's white as a part of the display's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) white_luminance: Option<f64>,
 }
 
 /// The frames with a test image.

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use protocols::{Access, InputError, ReadError, Study, Viewing, write_atomically};
 use serde::{Deserialize, Serialize};
 
-use crate::ExperimentError;
+use crate::{Display, DisplayColor, ExperimentError};
 
 /// A computer's screen and chair, as they were measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -24,23 +24,15 @@ pub struct StationFile {
     pub width_px: u32,
     /// From the eye to the screen.
     pub distance_cm: f64,
-    /// What the display is taken for: `sRGB` by declaration.
-    pub color: DisplayColor,
     /// The peak luminance, if it was measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peak_luminance_cd_m2: Option<f64>,
     /// Lights and surround, in words.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surround: Option<String>,
-}
-
-/// What the display's colours are taken for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum DisplayColor {
-    /// IEC 61966-2-1 by declaration; nothing was measured.
-    #[default]
-    #[serde(rename = "sRGB, declared")]
-    Srgb,
+    /// What the display's colours are taken for.
+    #[serde(default)]
+    pub color: DisplayColor,
 }
 
 impl StationFile {
@@ -100,6 +92,15 @@ impl StationFile {
         range("distance_cm", self.distance_cm, 10.0, 1000.0)?;
         let peak = self.peak_luminance_cd_m2.unwrap_or(100.0);
         range("peak_luminance_cd_m2", peak, 1.0, 10_000.0)
+    }
+
+    /// How colours get to the station's display.
+    ///
+    /// # Errors
+    ///
+    /// The chromaticities are no display's, or the ICC profile is not the one that was named.
+    pub fn display(&self) -> Result<Display, ReadError> {
+        self.color.display(Path::new("station.toml"))
     }
 
     /// The width of a pixel.
@@ -186,6 +187,7 @@ pub fn station_for(study: &Study, named: Option<&Path>) -> Result<Option<Station
     };
     let station = StationFile::read(&path)?;
     station.check_for(study, &path)?;
+    station.color.display(&path)?;
     Ok(Some(station))
 }
 

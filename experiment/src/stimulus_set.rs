@@ -13,6 +13,8 @@ use protocols::{
 };
 
 use crate::ExperimentError;
+use crate::display::{Display, ac1c2_of_srgb};
+use crate::opponent_file::read_opponent_file;
 
 /// An image as the screen shows it: 8-bit sRGB, row by row from the top, three bytes a pixel.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -52,6 +54,46 @@ impl StimulusSet {
             images,
             manifest_sha256,
         })
+    }
+
+    /// The same set with the codes of a display, and for each image how many pixels the display lacks.
+    ///
+    /// The colours come from the EXR files, those of one's own pictures from their sRGB. For a display that is sRGB
+    /// by declaration the bytes stay as they are.
+    ///
+    /// # Errors
+    ///
+    /// An EXR file is missing, malformed, of another size, or not the file that was made.
+    pub fn for_display(
+        mut self,
+        study: &Study,
+        stimuli_dir: &Path,
+        display: &Display,
+    ) -> Result<(Self, BTreeMap<StimulusId, u64>), ExperimentError> {
+        let mut lacking = BTreeMap::new();
+        if *display == Display::Srgb {
+            return Ok((self, lacking));
+        }
+        let files = opponent_files(study, stimuli_dir)?;
+        for (id, image) in &mut self.images {
+            let colors = match files.get(id) {
+                Some(file) => {
+                    let bytes = file.read_verified(stimuli_dir)?;
+                    read_opponent_file(&bytes, &stimuli_dir.join(&file.name), self.size_px)?
+                }
+                None => (image.rgb.chunks_exact(3))
+                    .map(|rgb| ac1c2_of_srgb([rgb[0], rgb[1], rgb[2]]))
+                    .collect(),
+            };
+            let shown: Vec<([u8; 3], bool)> = colors
+                .into_iter()
+                .map(|color| display.shown(color))
+                .collect();
+            let out = shown.iter().filter(|(_, is_in)| !is_in).count();
+            lacking.insert(id.clone(), out as u64);
+            image.rgb = shown.into_iter().flat_map(|(codes, _)| codes).collect();
+        }
+        Ok((self, lacking))
     }
 
     /// Width and height of every image.
@@ -130,6 +172,20 @@ impl ShownFiles {
             }
         }
     }
+}
+
+/// The EXR file of each image of a rendered set; own pictures have none.
+fn opponent_files(
+    study: &Study,
+    stimuli_dir: &Path,
+) -> Result<BTreeMap<StimulusId, ManifestFile>, ReadError> {
+    if study.protocol.stimuli.rendered().is_none() {
+        return Ok(BTreeMap::new());
+    }
+    let manifest = Manifest::read(stimuli_dir)?;
+    manifest.check_made_for(study, stimuli_dir)?;
+    let entries = manifest.stimuli.into_iter();
+    Ok(entries.map(|entry| (entry.id, entry.exr)).collect())
 }
 
 fn read_image(

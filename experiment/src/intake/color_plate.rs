@@ -11,10 +11,10 @@
 
 use protocols::PerChannel;
 use protocols::opponent::linear_srgb_from_ac1c2;
-use protocols::srgb::srgb_encode;
 
 use super::confusion::Axis;
 use super::digit_mask;
+use crate::display::{Display, ac1c2_of_srgb};
 use crate::random::Random;
 
 /// The width and height of a plate, in pixels of the screen.
@@ -46,12 +46,12 @@ pub struct ColorPlate {
     key: String,
 }
 
-/// A plate as the screen shows it: 8-bit sRGB, row by row, `None` where the ground shows through.
+/// A plate, row by row, without the ground that shows between its dots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlateImage {
     /// Width and height.
     pub size_px: u32,
-    /// Red, green and blue of each pixel, linear, and how much of the pixel the dots cover.
+    /// A, C1 and C2 of each pixel, and how much of the pixel the dots cover.
     pixels: Vec<([f64; 3], f64)>,
 }
 
@@ -130,7 +130,7 @@ impl ColorPlate {
         let width = PLATE_PX as usize;
         let mut pixels = vec![([0.0; 3], 0.0); width * width];
         for dot in self.dots() {
-            let color = linear_srgb_from_ac1c2(dot.ac1c2);
+            let color = [dot.ac1c2.a, dot.ac1c2.c1, dot.ac1c2.c2];
             for (place, cover) in covered(&dot, width) {
                 let (sum, whole) = &mut pixels[place];
                 for (sum, value) in sum.iter_mut().zip(color) {
@@ -147,11 +147,13 @@ impl ColorPlate {
 }
 
 impl PlateImage {
-    /// The bytes on a ground of this grey.
-    pub fn on_grey(&self, ground_srgb: u8) -> Vec<u8> {
-        let ground = protocols::srgb::srgb_decoded(f64::from(ground_srgb) / 255.0);
+    /// The codes for a display, on a ground of this grey (sRGB).
+    pub fn on_grey(&self, ground_srgb: u8, display: &Display) -> Vec<u8> {
+        let ground = ac1c2_of_srgb([ground_srgb; 3]);
+        let ground = [ground.a, ground.c1, ground.c2];
         let bytes = |(sum, cover): &([f64; 3], f64)| {
-            sum.map(|value| srgb_encode(value + (1.0 - cover) * ground))
+            let [a, c1, c2] = [0, 1, 2].map(|i| sum[i] + (1.0 - cover) * ground[i]);
+            display.shown(PerChannel { a, c1, c2 }).0
         };
         self.pixels.iter().flat_map(bytes).collect()
     }

@@ -276,7 +276,7 @@ fn every_dot_of_a_plate_can_be_shown_and_none_overlaps_another() {
             assert!(rgb.iter().all(|value| (-1e-9..=1.0 + 1e-9).contains(value)));
         }
         let image = plate.image();
-        let bytes = image.on_grey(128);
+        let bytes = image.on_grey(128, &crate::Display::Srgb);
         assert_eq!(bytes.len(), 3 * 480 * 480);
         assert_eq!(bytes[..3], [128; 3], "the corner is ground");
         assert!(bytes.chunks_exact(3).any(|rgb| rgb != [128; 3]));
@@ -293,7 +293,7 @@ fn plates_to_look_at() {
     for (index, plate) in intake(DoneBefore::default()).plates().iter().enumerate() {
         let name = format!("{index}-{:?}-{}.png", plate.axis, plate.digit);
         let path = std::path::Path::new(&folder).join(name);
-        let bytes = plate.image().on_grey(128);
+        let bytes = plate.image().on_grey(128, &crate::Display::Srgb);
         image::save_buffer(path, &bytes, 480, 480, image::ExtendedColorType::Rgb8).unwrap();
     }
 }

@@ -72,6 +72,8 @@ impl Place {
             refresh: None,
             compared_px: 0,
             measured: None,
+            out_of_gamut_px: std::collections::BTreeMap::new(),
+            white_luminance: None,
         };
         sitting.begin(station, 0.0)?;
         Ok(sitting)

@@ -1,7 +1,9 @@
 //! The window's loop: input to the session, ratings to disk, the frame to the screen.
 
-use eframe::egui::{self, CursorIcon, ViewportCommand};
-use protocols::SessionPlan;
+use std::collections::BTreeMap;
+
+use eframe::egui::{self, Color32, CursorIcon, ViewportCommand};
+use protocols::{SessionPlan, StimulusId};
 
 use super::Outcome;
 use super::before::Before;
@@ -9,11 +11,13 @@ use super::clock::Clock;
 use super::gate::{Gate, Sizes};
 use super::geometry::Geometry;
 use super::input;
-use super::intake_page::IntakePage;
+use super::intake_page::{IntakePage, Looks};
 use super::monitor::Monitor;
 use super::paint::{Brush, Pictures};
 use crate::sitting::Sitting;
-use crate::{Event, ExperimentError, Key, Noted, Screen, Session, SessionEnd, StationFile, Step};
+use crate::{
+    Display, Event, ExperimentError, Key, Noted, Screen, Session, SessionEnd, StationFile, Step,
+};
 
 /// What the subject is to see.
 pub(crate) struct Show {
@@ -24,6 +28,18 @@ pub(crate) struct Show {
     pub(crate) monitor: Option<String>,
     /// The measured screen and chair.
     pub(crate) station: Option<StationFile>,
+    /// How colours get to the screen.
+    pub(crate) display: Display,
+    /// For each image how many pixels the display lacks.
+    pub(crate) out_of_gamut_px: BTreeMap<StimulusId, u64>,
+}
+
+impl Show {
+    /// The neutral grey of the screen.
+    fn ground(&self) -> Color32 {
+        let [red, green, blue] = self.display.grey(self.plan.background_srgb);
+        Color32::from_rgb(red, green, blue)
+    }
 }
 
 /// Whether the window has the keyboard, and how often it lost it while images were shown or awaited.
@@ -82,15 +98,13 @@ impl SessionApp {
     ) -> Result<Option<SessionEnd>, ExperimentError> {
         let context = &ui.ctx().clone();
         let sizes = Sizes::of(context);
-        let geometry = Geometry {
-            size_px: sizes.window_px.map(|pixels| pixels as f32).into(),
-            pixels_per_point: sizes.pixels_per_point,
-        };
+        let geometry = sizes.geometry();
         let painter = ui.painter().clone();
         let brush = Brush {
             painter: &painter,
             geometry,
             plan: &self.show.plan,
+            ground: self.show.ground(),
             pointer: context.input(|input| input.pointer.latest_pos()),
         };
         brush.background();
@@ -161,8 +175,13 @@ impl SessionApp {
         if context.input(|input| input.viewport().close_requested()) {
             context.send_viewport_cmd(ViewportCommand::CancelClose);
         }
+        let looks = Looks {
+            plan: &self.show.plan,
+            geometry,
+            display: &self.show.display,
+        };
         let intake = &mut self.sitting.intake;
-        let reply = (self.intake_page).show(ui, geometry, &self.show.plan, intake);
+        let reply = (self.intake_page).show(ui, &looks, intake);
         intake.shown(now_s);
         if let Some(reply) = reply {
             let finished = intake.reply(reply, now_s);
@@ -181,6 +200,7 @@ impl SessionApp {
                 painter: &painter,
                 geometry,
                 plan: &self.show.plan,
+                ground: self.show.ground(),
                 pointer: None,
             };
             brush.pilot(speed);
@@ -206,6 +226,6 @@ impl eframe::App for SessionApp {
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
-        egui::Color32::from_gray(self.show.plan.background_srgb).to_normalized_gamma_f32()
+        self.show.ground().to_normalized_gamma_f32()
     }
 }

@@ -11,7 +11,7 @@ use crate::sitting::Sitting;
 use crate::{ExperimentError, Noted, Refresh, StationFile};
 
 /// How many intervals between frames are measured before the first screen, and in a trial run.
-const MEASURED_FRAMES: usize = 120;
+const MEASURED_FRAMES: usize = 300;
 const MEASURED_FRAMES_OF_PILOT: usize = 20;
 
 /// What comes before the first screen, one after the other.
@@ -80,6 +80,8 @@ impl Before {
                         refresh: Some(*refresh),
                         monitor: monitor.name.clone(),
                         measured: show.station.clone(),
+                        out_of_gamut_px: show.out_of_gamut_px.clone(),
+                        white_luminance: show.display.white_luminance(),
                         ..station(sizes)
                     };
                     let compared = format!("{} pixels equal", proof.compared_px());
@@ -119,6 +121,8 @@ fn station(sizes: Sizes) -> Station {
         refresh: None,
         compared_px: 0,
         measured: None,
+        out_of_gamut_px: std::collections::BTreeMap::new(),
+        white_luminance: None,
         operating_system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
         window_px: sizes.window_px,
         monitor_px: sizes.monitor_px,

@@ -5,6 +5,7 @@
 
 use eframe::egui::{Context, Pos2, ViewportCommand};
 
+use super::geometry::Geometry;
 use crate::ExperimentError;
 
 /// After this long the window is moved and sized by hand.
@@ -28,6 +29,14 @@ pub(crate) struct Sizes {
 }
 
 impl Sizes {
+    /// The window, to place things in.
+    pub(crate) fn geometry(self) -> Geometry {
+        Geometry {
+            size_px: self.window_px.map(|pixels| pixels as f32).into(),
+            pixels_per_point: self.pixels_per_point,
+        }
+    }
+
     pub(crate) fn of(context: &Context) -> Self {
         let pixels_per_point = context.pixels_per_point();
         let pixels = |points: f32| {

@@ -12,7 +12,7 @@ use eframe::egui::{
 use protocols::{FieldKind, FormField, ScreeningPlan, SessionPlan};
 
 use super::geometry::Geometry;
-use crate::{Intake, Reply, Side, Step};
+use crate::{Display, Intake, Reply, Side, Step};
 
 const INK: Color32 = Color32::from_gray(12);
 const FACE: Color32 = Color32::from_gray(180);
@@ -27,10 +27,12 @@ pub(crate) struct IntakePage {
     is_asking: bool,
 }
 
-/// One frame of a page.
-struct Page<'a> {
-    plan: &'a SessionPlan,
-    geometry: Geometry,
+/// What the pages are drawn with.
+#[derive(Clone, Copy)]
+pub(crate) struct Looks<'a> {
+    pub(crate) plan: &'a SessionPlan,
+    pub(crate) geometry: Geometry,
+    pub(crate) display: &'a Display,
 }
 
 impl IntakePage {
@@ -38,11 +40,9 @@ impl IntakePage {
     pub(crate) fn show(
         &mut self,
         ui: &mut Ui,
-        geometry: Geometry,
-        plan: &SessionPlan,
+        page: &Looks<'_>,
         intake: &mut Intake,
     ) -> Option<Reply> {
-        let page = Page { plan, geometry };
         let step = intake.step();
         if ui.input(|input| input.key_pressed(Key::Escape)) {
             self.is_asking = !self.is_asking;
@@ -50,12 +50,12 @@ impl IntakePage {
         ui.push_id((step_number(step), self.is_asking), |ui| {
             page.style(ui);
             if self.is_asking {
-                return self.ask(&page, ui);
+                return self.ask(page, ui);
             }
             match step {
                 Step::Consent => page.consent(ui),
                 Step::Form => page.form(ui, intake),
-                Step::Plate(index) => self.plate(&page, ui, intake, index),
+                Step::Plate(index) => self.plate(page, ui, intake, index),
                 Step::Letter(index) => page.letter(ui, intake, index),
                 Step::Done | Step::Left => None,
             }
@@ -64,7 +64,7 @@ impl IntakePage {
     }
 
     /// Whether to stop.
-    fn ask(&mut self, page: &Page<'_>, ui: &mut Ui) -> Option<Reply> {
+    fn ask(&mut self, page: &Looks<'_>, ui: &mut Ui) -> Option<Reply> {
         let texts = &page.plan.texts;
         page.line(ui, &texts.stop_question, 40.0, 0.42);
         let pushed = page.row(ui, &[&texts.continue_button, &texts.stop_button], 0.56)?;
@@ -74,7 +74,7 @@ impl IntakePage {
 
     fn plate(
         &mut self,
-        page: &Page<'_>,
+        page: &Looks<'_>,
         ui: &mut Ui,
         intake: &Intake,
         index: usize,
@@ -83,7 +83,7 @@ impl IntakePage {
         if self.plate.as_ref().is_none_or(|(held, _)| *held != index) {
             let image = plate.image();
             let side = image.size_px as usize;
-            let rgb = image.on_grey(page.plan.background_srgb);
+            let rgb = image.on_grey(page.plan.background_srgb, page.display);
             let image = ColorImage::from_rgb([side, side], &rgb);
             let texture = ui
                 .ctx()
@@ -114,7 +114,7 @@ fn step_number(step: Step) -> usize {
     }
 }
 
-impl Page<'_> {
+impl Looks<'_> {
     /// A length of the design in points.
     fn points(&self, units: f32) -> f32 {
         units * self.geometry.unit() / self.geometry.pixels_per_point

@@ -18,7 +18,7 @@ use eframe::egui::ViewportBuilder;
 use eframe::{NativeOptions, Renderer};
 use protocols::Study;
 
-use crate::{ExperimentError, RunOptions, SessionEnd, StimulusSet};
+use crate::{Display, ExperimentError, RunOptions, SessionEnd, StationFile, StimulusSet};
 
 use app::{SessionApp, Show};
 use clock::Clock;
@@ -41,6 +41,11 @@ type Outcome = Rc<RefCell<Option<Result<SessionEnd, ExperimentError>>>>;
 /// written. What was rated before an error is on disk.
 pub fn run(study: &Study, options: &RunOptions) -> Result<SessionEnd, ExperimentError> {
     let set = StimulusSet::read(study, &options.stimuli_dir)?;
+    let station = options.station.clone();
+    let display = station
+        .as_ref()
+        .map_or(Ok(Display::Srgb), StationFile::display)?;
+    let (set, out_of_gamut_px) = set.for_display(study, &options.stimuli_dir, &display)?;
     let clock = Clock::start();
     let sitting = crate::sitting::Sitting::open(study, &set, options, clock.zero())?;
     let outcome = Outcome::default();
@@ -61,7 +66,6 @@ pub fn run(study: &Study, options: &RunOptions) -> Result<SessionEnd, Experiment
     let protocol = study.protocol.clone();
     let pilot = options.pilot;
     let monitor = options.monitor.clone();
-    let station = options.station.clone();
     eframe::run_native(
         &title,
         native,
@@ -73,6 +77,8 @@ pub fn run(study: &Study, options: &RunOptions) -> Result<SessionEnd, Experiment
                 pilot,
                 monitor,
                 station,
+                display,
+                out_of_gamut_px,
             };
             let app = SessionApp::new(sitting, show, clock, app_outcome);
             Ok(Box::new(app))

@@ -75,14 +75,15 @@ pub(crate) struct Brush<'a> {
     pub(crate) painter: &'a Painter,
     pub(crate) geometry: Geometry,
     pub(crate) plan: &'a SessionPlan,
+    /// The neutral grey of the screen.
+    pub(crate) ground: Color32,
     /// Where the mouse is, in points.
     pub(crate) pointer: Option<Pos2>,
 }
 
 impl Brush<'_> {
     pub(crate) fn background(&self) {
-        let grey = Color32::from_gray(self.plan.background_srgb);
-        self.fill(self.geometry.screen_px(), grey);
+        self.fill(self.geometry.screen_px(), self.ground);
     }
 
     pub(crate) fn screen(&self, session: &Session, pictures: &Pictures) {

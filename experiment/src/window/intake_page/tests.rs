@@ -42,8 +42,13 @@ fn pages(before: DoneBefore) -> Pages {
             size_px: size,
             pixels_per_point: 1.0,
         };
+        let looks = Looks {
+            plan: &plan,
+            geometry,
+            display: &Display::Srgb,
+        };
         let mut intake = inner.borrow_mut();
-        let reply = page.show(ui, geometry, &plan, &mut intake);
+        let reply = page.show(ui, &looks, &mut intake);
         intake.shown(0.0);
         if let Some(reply) = reply {
             told.borrow_mut().extend(intake.reply(reply, 1.0));
