@@ -100,7 +100,7 @@ impl Geometry {
 
     /// The bar that says how much is done.
     pub(crate) fn progress(self) -> Rect {
-        let middle = (self.size_px * vec2(0.5, 0.925)).to_pos2();
+        let middle = (self.size_px * vec2(0.5, 0.9)).to_pos2();
         centred(middle, vec2(420.0, 10.0) * self.unit())
     }
 

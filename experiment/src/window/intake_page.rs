@@ -286,7 +286,7 @@ impl Looks<'_> {
     fn digits(&self, ui: &mut Ui, plan: &ScreeningPlan) -> Option<Reply> {
         let mut reply = None;
         let (side, step) = (self.points(76.0), self.points(92.0));
-        let middle = self.part([0.5, 0.83], [0.5, 0.83]).min;
+        let middle = self.part([0.5, 0.805], [0.5, 0.805]).min;
         for digit in 0..10_u8 {
             let centre = pos2(middle.x + step * (f32::from(digit) - 4.5), middle.y);
             let rect = Rect::from_center_size(centre, Vec2::splat(side));
@@ -295,7 +295,7 @@ impl Looks<'_> {
                 reply = Some(Reply::Digit(Some(digit)));
             }
         }
-        if self.row(ui, &[&plan.no_digit], 0.93).is_some() {
+        if self.row(ui, &[&plan.no_digit], 0.885).is_some() {
             reply = Some(Reply::Digit(None));
         }
         let typed = ui.input(|input| {
@@ -344,7 +344,7 @@ impl Looks<'_> {
                 reply = Some(Reply::Side(Some(side)));
             }
         }
-        if self.row(ui, &[&plan.no_direction], 0.91).is_some() {
+        if self.row(ui, &[&plan.no_direction], 0.885).is_some() {
             reply = Some(Reply::Side(None));
         }
         reply
