@@ -100,7 +100,7 @@ fn measure_shading(scene: &Scene, name: &str, quadrature: Quadrature) {
     let ways: [(&str, Shading<'_>); 2] = [("products", &products), ("wavelengths", &wavelengths)];
     for (way, one) in ways {
         print_least(&format!("{name}, {way}"), |stop| {
-            shade_all(&trees, stop, one)
+            shade_all(&trees, stop, one);
         });
     }
 }

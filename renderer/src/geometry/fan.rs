@@ -34,7 +34,7 @@ pub(super) const WIDTH: usize = 8;
 pub(super) const NONE: u16 = u16::MAX;
 
 /// The shapes of a narrow pyramid, nearer first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(align(32))]
 pub(super) struct Leaf {
     pub(super) shapes: [u16; WIDTH],

@@ -1,7 +1,7 @@
 //! How the lists of a fan are made: from wide pyramids to narrow ones, each trying only the shapes of the one
 //! that holds it.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::fan::{Fan, LEAF, Leaf, MAX_LEVELS, NONE, Part, WIDTH};
@@ -60,7 +60,7 @@ struct Filling<'a> {
     looks: Looks,
     fan: Fan,
     /// The leaves by what is in them.
-    known: HashMap<Leaf, Part>,
+    known: BTreeMap<Leaf, Part>,
     /// The candidates of the pyramids that are being parted, those of the narrowest last.
     stack: Vec<Candidate>,
     trials: usize,
@@ -97,7 +97,7 @@ impl Fan {
                 nodes: Vec::new(),
                 leaves: vec![Leaf::EMPTY],
             },
-            known: HashMap::new(),
+            known: BTreeMap::new(),
             stack: all.collect(),
             trials: 0,
             mean: 0.0,
