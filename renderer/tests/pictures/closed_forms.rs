@@ -147,7 +147,8 @@ fn a_plane_under_a_point_light_is_i_cos_theta_over_d_squared_in_every_pixel() {
 }
 
 /// Every surface upright, white and in ambient light: the wall, a coated rod that mirrors it and a perfect
-/// mirror all are of the same brightness, so that nothing is seen.
+/// mirror all are of the same brightness, so that nothing is seen. Glass neither: what it mirrors and what it lets
+/// through sum to all, but for the rays too weak or too late to be followed.
 #[test]
 fn in_a_white_furnace_nothing_is_seen() {
     let rod = |material: &str, x: f64| {
@@ -155,7 +156,15 @@ fn in_a_white_furnace_nothing_is_seen() {
             "{{ material = \"{material}\", base_m = [{x}, 3, -500], top_m = [{x}, 3, 500], radius_m = 0.6 }}"
         )
     };
-    for material in ["coated", "silver", "white"] {
+    let exact = 1e-6;
+    // At most three rays of a path end unfollowed, each worth less than 1/1024.
+    let with_weak_rays_left_out = 3.0 / 1024.0;
+    for (material, tolerance) in [
+        ("coated", exact),
+        ("silver", exact),
+        ("white", exact),
+        ("crystal", with_weak_rays_left_out),
+    ] {
         let text = format!(
             r#"
 camera = {{ position_m = [0, -1, 0], look_at_m = [0, 1, 0.3], up = [0, 0, 1], vertical_field_of_view_deg = 60 }}
@@ -174,6 +183,8 @@ reflectance = [[400, 1]]
 highlight = 0
 exponent = 1
 refractive_index = 1.5
+[glass.crystal]
+refractive_index = 1.5
 "#,
             rod(material, 0.4)
         );
@@ -189,7 +200,7 @@ refractive_index = 1.5
             for value in reconstruct(&leaves, SIZE_PX).values() {
                 let expected = 0.8 * 0.5 * of_light;
                 assert!(
-                    (f64::from(*value) - expected).abs() < 1e-6,
+                    (f64::from(*value) - expected).abs() < tolerance,
                     "{material}, {channel}: {value}, not {expected}"
                 );
             }
