@@ -19,6 +19,7 @@
 
 use arrayvec::ArrayVec;
 use protocols::{Channel, PerChannel, RefinementDriver};
+use rayon::prelude::*;
 
 use crate::cell::{Axis, Cell};
 use crate::confidence::Regions;
@@ -36,6 +37,9 @@ const SHARE: usize = 16;
 
 /// This many halves look around at once.
 const AT_ONCE: usize = 64;
+
+/// So many leaves at most are held halved and looked round before what their halves found is entered.
+const BATCH: usize = 16_384;
 
 /// How much of the variance that is expected in a leaf is expected in its halves, where the map is too coarse to
 /// show them.
@@ -88,6 +92,9 @@ struct Meetings {
     here: Expected,
     there: [Expected; 4],
 }
+
+/// Some halves with what they found.
+type Looks = ArrayVec<(Half, Meetings), AT_ONCE>;
 
 /// The leaves of a tree.
 #[derive(Debug)]
@@ -253,9 +260,15 @@ impl Leaves {
         }
     }
 
-    /// Splits a leaf: its sample keeps its half, a new one is in the other. Both have no class before they
+    /// Splits leaves: the sample of each keeps its half, a new one is in the other. Both have no class before they
     /// [look around](Self::look_around).
-    pub(crate) fn split(&mut self, NewLeaf { split, sample }: &NewLeaf) {
+    pub(crate) fn split_all(&mut self, new: &[NewLeaf]) {
+        for new in new {
+            self.split(new);
+        }
+    }
+
+    fn split(&mut self, NewLeaf { split, sample }: &NewLeaf) {
         let old = split.leaf as usize;
         let number = as_number(self.known.len());
         let [old_node, new_node] = split.nodes(number);
@@ -289,35 +302,38 @@ impl Leaves {
 
     /// All halves that were made since the last call look at what lies around them.
     ///
-    /// In steps, each for a number of halves, so that the memory is asked for many things at a time.
+    /// What they find depends on nothing that they enter, so they look on all threads, and enter it in turn.
     pub(crate) fn look_around(&mut self) {
         let mut halved = std::mem::take(&mut self.halved);
-        for halved in halved.chunks(AT_ONCE / 2) {
-            let mut halves = ArrayVec::<Half, AT_ONCE>::new();
-            halves.extend(
-                halved
-                    .iter()
-                    .flat_map(|&Halved { old, new, .. }| [old, new])
-                    .map(|own| {
-                        let cell = self.cell(own);
-                        Half {
-                            own,
-                            cell,
-                            around: self.map.around(own, cell),
-                        }
-                    }),
-            );
-            let mut meetings = ArrayVec::<Meetings, AT_ONCE>::new();
-            meetings.extend(halves.iter().map(|half| self.meetings(half)));
-            for (half, meetings) in halves.iter().zip(&meetings) {
+        for batch in halved.chunks(BATCH) {
+            let looks: Vec<Looks> = batch
+                .par_chunks(AT_ONCE / 2)
+                .map(|halved| self.look(halved))
+                .collect();
+            for (half, meetings) in looks.iter().flatten() {
                 self.take_in(half, meetings);
             }
-            for &halved in halved {
+            for &halved in batch {
                 self.inherit(halved);
             }
         }
         halved.clear();
         self.halved = halved;
+    }
+
+    /// What some halves find around them; in two steps, so that the memory is asked for many things at a time.
+    fn look(&self, halved: &[Halved]) -> Looks {
+        let mut halves = ArrayVec::<Half, AT_ONCE>::new();
+        for own in halved
+            .iter()
+            .flat_map(|&Halved { old, new, .. }| [old, new])
+        {
+            let cell = self.cell(own);
+            let around = self.map.around(own, cell);
+            halves.push(Half { own, cell, around });
+        }
+        let looks = halves.iter().map(|half| (*half, self.meetings(half)));
+        looks.collect()
     }
 
     /// What a leaf and its neighbours lead to expect in each other.

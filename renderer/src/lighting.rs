@@ -3,6 +3,8 @@
 //! Lights without extent cast hard shadows; an area light is sampled at one place in each cell of a grid.
 //! Nothing shines through anything: glass too casts a full shadow.
 
+use rayon::prelude::*;
+
 use crate::geometry::{Ray, RoundFan, Span, Vector};
 use crate::jitter::Jitter;
 use crate::sampler::ScreenPoint;
@@ -76,7 +78,7 @@ impl<'scene> Lighting<'scene> {
         };
         Self {
             scene,
-            fans: scene.lights.iter().map(fan).collect(),
+            fans: scene.lights.par_iter().map(fan).collect(),
         }
     }
 

@@ -133,10 +133,7 @@ pub(crate) fn trace_from<S: Sampler>(
             }
             let todo = (&leaves, tree.len(), batch);
             sample_batch(sampler, plan, todo, taken, &mut new);
-            tree.split(&new);
-            for new in &new {
-                leaves.split(new);
-            }
+            rayon::join(|| tree.split(&new), || leaves.split_all(&new));
             progress(tree.len() as u64, rays as u64);
         }
         if tree.len() < rays || plan.until.is_some() {

@@ -62,13 +62,23 @@ impl<'scene> SceneSampler<'scene> {
         let aspect = width / height;
         let pyramid = scene.camera.pyramid(aspect);
         let rule = WavelengthRule::new(quadrature);
-        let shader = Shader::new(scene, &rule);
+        let (lighting, (view, (shader, bands))) = rayon::join(
+            || Lighting::new(scene),
+            || {
+                let shaders = || {
+                    let shader = Shader::new(scene, &rule);
+                    let bands = BandShader::new(scene, &rule, &shader);
+                    (shader, bands)
+                };
+                rayon::join(|| ViewFan::new(&pyramid, scene.shapes.shapes()), shaders)
+            },
+        );
         Self {
             scene,
-            bands: BandShader::new(scene, &rule, &shader),
             shader,
-            lighting: Lighting::new(scene),
-            view: ViewFan::new(&pyramid, scene.shapes.shapes()),
+            bands,
+            lighting,
+            view,
             aspect,
         }
     }
