@@ -2,17 +2,14 @@
 
 use std::time::Duration;
 
+use rustix::time::{ClockId, clock_gettime};
+
 /// How long the thread has run.
-///
-/// From Linux's `/proc/thread-self/schedstat`, in nanoseconds.
 pub(crate) fn cpu_time() -> Duration {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    let nanoseconds = text
-        .split(' ')
-        .next()
-        .and_then(|number| number.parse().ok());
-    let nanoseconds = nanoseconds.unwrap_or_else(|| unreachable!("the benches run on Linux"));
-    Duration::from_nanos(nanoseconds)
+    let time = clock_gettime(ClockId::ThreadCPUTime);
+    let seconds = u64::try_from(time.tv_sec).unwrap_or_default();
+    let nanoseconds = u32::try_from(time.tv_nsec).unwrap_or_default();
+    Duration::new(seconds, nanoseconds)
 }
 
 /// The least CPU time of one of `rounds` runs, in seconds.
