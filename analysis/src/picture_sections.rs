@@ -13,25 +13,11 @@ use crate::sections::Sections;
 impl Sections<'_> {
     /// The whole report.
     pub(crate) fn document_of_pictures(&self, pictures: &PictureAnalysis) -> Document {
-        let sections = [
-            self.banners(),
-            Some(self.result_of_effects()),
-            Some(self.the_study()),
-            Some(self.figure_of_cells(pictures)),
-            Some(self.anova()),
-            self.published(),
-            self.asymptotes(),
-            Some(self.means_of_cells(pictures)),
-            self.follow_ups(),
-            self.distribution_free(),
-            self.observers(),
-            Some(self.fragility()),
-            Some(self.deviations()),
-            Some(self.quality()),
-            Some(self.to_paste()),
-            Some(self.provenance()),
-        ];
-        self.with_head(sections.into_iter().flatten().collect())
+        self.document_of(
+            self.result_of_effects(),
+            self.figure_of_cells(pictures),
+            vec![self.means_of_cells(pictures)],
+        )
     }
 
     /// A sentence for each effect.

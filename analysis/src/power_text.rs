@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use crate::anova_table::{quoted, shortest};
 use crate::apa::fraction;
-use crate::power::{EffectPower, Power, PowerPoint};
+use crate::power::{AsymptoteWidth, Power, PowerPoint};
 use crate::text_table::TextTable;
 
 impl Power {
@@ -17,10 +17,10 @@ impl Power {
             settings.n_studies,
             fraction(self.widest_half(), 3)
         );
-        text.push_str(&self.table(|point| &point.effects, |one| fraction(one.power, 3)));
+        text.push_str(&self.table(power_fields));
         if self.points.iter().any(|point| !point.asymptotes.is_empty()) {
             text.push_str("\nWhere the curves flatten: mean width of the interval (and of the estimates, mean and SD)\n");
-            text.push_str(&self.asymptote_table());
+            text.push_str(&self.table(asymptote_fields));
         }
         // Writing to a `String` cannot fail, here and below.
         _ = writeln!(
@@ -43,40 +43,16 @@ impl Power {
         effects.fold(0.0, |widest, one| widest.max((one.high - one.low) / 2.0))
     }
 
-    fn table(
-        &self,
-        of: fn(&PowerPoint) -> &Vec<EffectPower>,
-        field: fn(&EffectPower) -> String,
-    ) -> String {
-        let names = self.points.first().map(of).into_iter().flatten();
+    /// A line for each number of subjects, with a field for each column that a point has.
+    fn table(&self, columns: fn(&PowerPoint) -> Vec<(&str, String)>) -> String {
+        let names = self.points.first().map(columns).into_iter().flatten();
         let header: Vec<&str> = std::iter::once("subjects")
-            .chain(names.map(|one| one.effect.as_str()))
+            .chain(names.map(|(name, _)| name))
             .collect();
         let mut table = TextTable::new(&header);
         for point in &self.points {
             let mut fields = vec![point.subjects.to_string()];
-            fields.extend(of(point).iter().map(field));
-            table.row(&fields);
-        }
-        table.to_text()
-    }
-
-    fn asymptote_table(&self) -> String {
-        let first = self.points.first();
-        let curves = first.map(|point| &point.asymptotes).into_iter().flatten();
-        let header: Vec<&str> = std::iter::once("subjects")
-            .chain(curves.map(|one| one.curve.as_str()))
-            .collect();
-        let mut table = TextTable::new(&header);
-        for point in &self.points {
-            let mut fields = vec![point.subjects.to_string()];
-            fields.extend((point.asymptotes.iter()).map(|one| {
-                let unit = &one.unit;
-                format!(
-                    "{:.1}{unit} ({:.1}{unit}, {:.1}{unit})",
-                    one.width, one.estimate, one.sd
-                )
-            }));
+            fields.extend(columns(point).into_iter().map(|(_, field)| field));
             table.row(&fields);
         }
         table.to_text()
@@ -128,4 +104,27 @@ impl Power {
         json.push('\n');
         json
     }
+}
+
+/// The power of each effect.
+fn power_fields(point: &PowerPoint) -> Vec<(&str, String)> {
+    let effects = point.effects.iter();
+    effects
+        .map(|one| (one.effect.as_str(), fraction(one.power, 3)))
+        .collect()
+}
+
+/// The width of each interval, and of the estimates mean and SD.
+fn asymptote_fields(point: &PowerPoint) -> Vec<(&str, String)> {
+    let field = |one: &AsymptoteWidth| {
+        let unit = &one.unit;
+        format!(
+            "{:.1}{unit} ({:.1}{unit}, {:.1}{unit})",
+            one.width, one.estimate, one.sd
+        )
+    };
+    let asymptotes = point.asymptotes.iter();
+    asymptotes
+        .map(|one| (one.curve.as_str(), field(one)))
+        .collect()
 }

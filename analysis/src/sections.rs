@@ -26,16 +26,31 @@ pub(crate) struct Sections<'a> {
 impl Sections<'_> {
     /// The whole report.
     pub(crate) fn document(&self) -> Document {
-        let sections = [
+        let means = [Some(self.means()), self.differences()];
+        self.document_of(
+            self.result(),
+            self.figure(),
+            means.into_iter().flatten().collect(),
+        )
+    }
+
+    /// A report with these sections in their places among those that every study has.
+    pub(crate) fn document_of(
+        &self,
+        result: Section,
+        figure: Section,
+        means: Vec<Section>,
+    ) -> Document {
+        let before = [
             self.banners(),
-            Some(self.result()),
+            Some(result),
             Some(self.the_study()),
-            Some(self.figure()),
+            Some(figure),
             Some(self.anova()),
             self.published(),
             self.asymptotes(),
-            Some(self.means()),
-            self.differences(),
+        ];
+        let after = [
             self.follow_ups(),
             self.distribution_free(),
             self.observers(),
@@ -45,7 +60,8 @@ impl Sections<'_> {
             Some(self.to_paste()),
             Some(self.provenance()),
         ];
-        self.with_head(sections.into_iter().flatten().collect())
+        let sections = before.into_iter().flatten().chain(means);
+        self.with_head(sections.chain(after.into_iter().flatten()).collect())
     }
 
     pub(crate) fn percent(&self) -> String {
@@ -56,7 +72,7 @@ impl Sections<'_> {
         self.ratings.who(self.analysis.subjects.len())
     }
 
-    pub(crate) fn with_head(&self, sections: Vec<Section>) -> Document {
+    fn with_head(&self, sections: Vec<Section>) -> Document {
         let protocol = &self.study.protocol;
         Document {
             study: escaped(&protocol.study),
