@@ -23,6 +23,15 @@ pub(crate) struct RatingsLog {
     rated: usize,
 }
 
+impl Drop for RatingsLog {
+    /// Gives the lock back at once: closing the file alone would leave it to a program that is just being
+    /// started by another thread, until that program is in place of its copy of this one.
+    fn drop(&mut self) {
+        // A lock that cannot be given back goes with the file.
+        _ = self.file.unlock();
+    }
+}
+
 impl RatingsLog {
     /// Opens the ratings of a session, whose trials are `trials`, and locks them.
     pub(crate) fn open(
@@ -64,6 +73,12 @@ impl RatingsLog {
             path,
             rated: found.rows.len(),
         })
+    }
+
+    /// The open file and its lock once more, as a program that is being started holds them for a moment.
+    #[cfg(test)]
+    pub(crate) fn held_elsewhere(&self) -> File {
+        self.file.try_clone().unwrap()
     }
 
     /// How many trials are on disk.
