@@ -128,11 +128,13 @@ impl<'scene> Lighting<'scene> {
         let shapes = &self.scene.shapes;
         let is_blocked = |ray: &Ray, span| shapes.is_blocked(ray, span, surface.outside_of);
         // From where the shadow rays start, so that each ends just before the light's own surface.
-        let start = surface.lifted();
+        let Some(seen) = light.seen_from(surface.lifted()) else {
+            return sum;
+        };
         for row in 0..light.side {
             for column in 0..light.side {
                 let at = jitter.within([column, row], light.side);
-                let lit = lit_from(&light.arrival(start, at), surface, receiver, is_blocked);
+                let lit = lit_from(&seen.arrival(at), surface, receiver, is_blocked);
                 sum.illuminance += lit.illuminance;
                 sum.highlight += lit.highlight;
             }

@@ -23,6 +23,8 @@ use crate::tints::TintIndex;
 
 /// A ray that counts less than this is not followed: a quarter of an 8-bit step of white.
 const LEAST_SHARE: f64 = 1.0 / 1024.0;
+/// A mirrored ray leaves a surface at an angle of at least this sine.
+const LEAST_HEIGHT: f64 = 1e-3;
 /// No path is longer: the camera's ray and seven more.
 const MAX_DEPTH: u32 = 8;
 /// No ray tree has more hits; the weaker rays of a hit are the ones left out.
@@ -272,8 +274,8 @@ struct Ways<'tree> {
 impl Surface {
     /// The surface that a ray met, whose own normal points `outwards`.
     ///
-    /// A smooth normal that cannot be seen from the ray, or that would mirror it into the surface, gives way
-    /// to the surface's own.
+    /// A smooth normal that cannot be seen from the ray gives way to the surface's own. A ray that a smooth normal
+    /// would mirror into the surface grazes it instead, so that the edges of a mesh's faces do not show.
     fn new(
         ray: &Ray,
         place: Vector,
@@ -288,15 +290,22 @@ impl Surface {
             }
         };
         let facing = towards_viewer(outwards);
-        let smooth = smooth.map(towards_viewer).filter(|&normal| {
-            normal.dot(ray.direction) < 0.0 && ray.direction.reflected(normal).dot(facing) > 0.0
-        });
+        let smooth = smooth
+            .map(towards_viewer)
+            .filter(|&normal| normal.dot(ray.direction) < 0.0);
         let normal = smooth.unwrap_or(facing);
+        let mirrored = ray.direction.reflected(normal);
+        let height = mirrored.dot(facing);
+        let mirrored = if smooth.is_some() && height < LEAST_HEIGHT {
+            (mirrored + facing * (LEAST_HEIGHT - height)).normalized()
+        } else {
+            mirrored
+        };
         Self {
             place,
             facing,
             normal,
-            mirrored: ray.direction.reflected(normal),
+            mirrored,
             outside_of,
         }
     }
@@ -391,5 +400,34 @@ impl Sampler for SceneSampler<'_> {
 
     fn radiance(&self, tree: &RayTree, wavelengths: Range<usize>, out: &mut [f32]) {
         self.bands.radiance(&self.shader, tree, wavelengths, out);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_smooth_mirror_sends_no_ray_into_the_surface_and_has_no_step() {
+        // A ray that falls on the plane z = 0, whose smooth normal turns from upright away from the viewer.
+        let ray = Ray {
+            origin: Vector::new(-1.0, 0.0, 0.2),
+            direction: Vector::new(1.0, 0.0, -0.2).normalized(),
+        };
+        let place = Vector::new(0.0, 0.0, 0.0);
+        let mirrored = |tilt_rad: f64| {
+            let smooth = Vector::new(libm::sin(tilt_rad), 0.0, libm::cos(tilt_rad));
+            let surface = Surface::new(&ray, place, (Vector::UP, Some(smooth)), None);
+            surface.mirrored
+        };
+        let mut before = mirrored(0.0);
+        assert!((before.z - 0.2 / 1.04_f64.sqrt()).abs() < 1e-12);
+        for step in 1..=190 {
+            let now = mirrored(f64::from(step) * 1e-3);
+            assert!(now.z >= 0.999e-3 && (now.length() - 1.0).abs() < 1e-12);
+            // Turning a mirror by an angle turns what it mirrors by twice as much, at most.
+            assert!((now - before).length() < 2.001e-3, "at {step}");
+            before = now;
+        }
     }
 }

@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::geometry::{Frame, Rectangle, Shape, Sphere, Vector};
+use crate::scene::seen_rectangle::SeenRectangle;
 use crate::spectra::Emission;
 
 /// A light that casts shadows.
@@ -120,53 +121,27 @@ impl Source {
 }
 
 impl AreaLight {
-    /// What arrives if the whole light were as the place of it with these coordinates from 0 to 1: the mean
-    /// over uniform coordinates is the illuminance of the light.
-    ///
-    /// ```text
-    /// rectangle   L A cos θ / (π d²), θ at the light
-    /// sphere      L Ω / π, Ω the solid angle of the sphere; directions are uniform in it
-    /// ```
-    pub(crate) fn arrival(&self, place: Vector, at: [f64; 2]) -> Arrival {
-        match self.surface {
+    /// The light as it is seen from a place; `None` if it is not.
+    pub(crate) fn seen_from(&self, place: Vector) -> Option<SeenLight> {
+        let (shape, solid_angle_sr) = match self.surface {
             AreaSurface::Rectangle {
                 corner,
                 edge_u,
                 edge_v,
             } => {
-                let path = corner + edge_u * at[0] + edge_v * at[1] - place;
-                let distance_m = path.length();
-                // The length of the cross product is the area.
-                let facing = -path.dot(edge_u.cross(edge_v)) / distance_m;
-                let illuminance = facing.max(0.0) / (PI * distance_m * distance_m);
-                Arrival::from_surface(path, distance_m, self.luminance * illuminance)
+                let (seen, solid_angle_sr) = SeenRectangle::new(place, corner, [edge_u, edge_v])?;
+                (SeenShape::Rectangle(seen), solid_angle_sr)
             }
             AreaSurface::Sphere { center, radius_m } => {
-                self.arrival_of_sphere(center - place, radius_m, at)
+                let (seen, solid_angle_sr) = SeenSphere::new(center - place, radius_m)?;
+                (SeenShape::Sphere(seen), solid_angle_sr)
             }
-        }
-    }
-
-    fn arrival_of_sphere(&self, to_center: Vector, radius_m: f64, at: [f64; 2]) -> Arrival {
-        let center_m = to_center.length();
-        let sin_squared = (radius_m / center_m) * (radius_m / center_m);
-        if sin_squared >= 1.0 {
-            return Arrival::DARK;
-        }
-        // 1 - cos of the half angle, without cancellation.
-        let height = sin_squared / (1.0 + (1.0 - sin_squared).sqrt());
-        let cos = 1.0 - at[0] * height;
-        let sin = (1.0 - cos * cos).max(0.0).sqrt();
-        let turn_rad = TAU * at[1];
-        let frame = Frame::about(to_center * center_m.recip());
-        let [across, along] = frame.sides();
-        let towards = frame.axis * cos
-            + across * (sin * libm::cos(turn_rad))
-            + along * (sin * libm::sin(turn_rad));
-        let half_chord_squared = radius_m * radius_m - center_m * center_m * sin * sin;
-        let distance_m = center_m * cos - half_chord_squared.max(0.0).sqrt();
-        let path = towards * distance_m;
-        Arrival::from_surface(path, distance_m, self.luminance * 2.0 * height)
+        };
+        Some(SeenLight {
+            shape,
+            solid_angle_sr,
+            illuminance: self.luminance * solid_angle_sr / PI,
+        })
     }
 
     /// The light as a shape that can be seen.
@@ -179,6 +154,82 @@ impl AreaLight {
             } => Shape::Rectangle(Rectangle::new(corner, edge_u, edge_v)),
             AreaSurface::Sphere { center, radius_m } => Shape::Sphere(Sphere { center, radius_m }),
         }
+    }
+}
+
+/// An area light as it is seen from a place.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SeenLight {
+    shape: SeenShape,
+    solid_angle_sr: f64,
+    illuminance: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum SeenShape {
+    Rectangle(SeenRectangle),
+    Sphere(SeenSphere),
+}
+
+impl SeenLight {
+    /// What arrives if the whole light were in one of its directions, which are uniform in its solid angle Ω for
+    /// uniform coordinates from 0 to 1: the illuminance L Ω / π on a surface that faces it, whichever it is.
+    pub(crate) fn arrival(&self, at: [f64; 2]) -> Arrival {
+        match &self.shape {
+            SeenShape::Rectangle(seen) => {
+                let path = seen.path(self.solid_angle_sr, at);
+                Arrival::from_surface(path, path.length(), self.illuminance)
+            }
+            SeenShape::Sphere(seen) => {
+                let (towards, distance_m) = seen.direction(at);
+                Arrival::from_surface(towards * distance_m, distance_m, self.illuminance)
+            }
+        }
+    }
+}
+
+/// A sphere seen from outside.
+#[derive(Clone, Copy, Debug)]
+struct SeenSphere {
+    frame: Frame,
+    center_m: f64,
+    radius_m: f64,
+    /// 1 - cos of the half angle.
+    height: f64,
+}
+
+impl SeenSphere {
+    /// The sphere and its solid angle; `None` from within.
+    fn new(to_center: Vector, radius_m: f64) -> Option<(Self, f64)> {
+        let center_m = to_center.length();
+        let sin_squared = (radius_m / center_m) * (radius_m / center_m);
+        if sin_squared >= 1.0 {
+            return None;
+        }
+        // 1 - cos of the half angle, without cancellation.
+        let height = sin_squared / (1.0 + (1.0 - sin_squared).sqrt());
+        let seen = Self {
+            frame: Frame::about(to_center * center_m.recip()),
+            center_m,
+            radius_m,
+            height,
+        };
+        Some((seen, TAU * height))
+    }
+
+    /// A direction, and how far the sphere is there.
+    fn direction(&self, at: [f64; 2]) -> (Vector, f64) {
+        let cos = 1.0 - at[0] * self.height;
+        let sin = (1.0 - cos * cos).max(0.0).sqrt();
+        let turn_rad = TAU * at[1];
+        let [across, along] = self.frame.sides();
+        let towards = self.frame.axis * cos
+            + across * (sin * libm::cos(turn_rad))
+            + along * (sin * libm::sin(turn_rad));
+        let half_chord_squared =
+            self.radius_m * self.radius_m - self.center_m * self.center_m * sin * sin;
+        let distance_m = self.center_m * cos - half_chord_squared.max(0.0).sqrt();
+        (towards, distance_m)
     }
 }
 

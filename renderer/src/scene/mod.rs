@@ -65,6 +65,7 @@ mod mesh_scene;
 mod meshes;
 mod palette;
 mod reader;
+mod seen_rectangle;
 mod shapes;
 mod table;
 pub(crate) mod texture;

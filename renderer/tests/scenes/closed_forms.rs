@@ -270,6 +270,39 @@ fn a_rectangle_light_gives_the_form_factor_to_a_parallel_surface() {
 }
 
 #[test]
+fn a_rectangle_light_that_stands_on_the_ground_leaves_no_specks_before_it() {
+    // A wall of light, 0.5 m high and 2 m wide, that shines towards +x from x = 0.
+    let scene = scene(&format!(
+        r#"{FROM_ABOVE}
+rectangle_light = [{{ corner_m = [0, -1, 0], edge_u_m = [0, 2, 0], edge_v_m = [0, 0, 0.5], emittance = "D65", luminance = 3, samples = 8 }}]
+ground = [{{ material = "grey", height_m = 0 }}]
+[diffuse.grey]
+reflectance = [[400, 0.5]]
+"#
+    ));
+    let sampler = sampler(&scene);
+    // From a small surface to a rectangle that stands upright at the distance c, one corner at the foot of the
+    // perpendicular, a high and b wide: Howell, B-5; its integrand spreads over half the hemisphere at most.
+    let corner = |a: f64, b: f64, c: f64| {
+        let (x, y) = (a / b, c / b);
+        let r = x.hypot(y);
+        ((1.0 / y).atan() - y / r * (1.0 / r).atan()) / std::f64::consts::TAU
+    };
+    for x_m in [1e-4, 1e-3, 1e-2, 0.1, 0.5, 1.2_f64] {
+        for y_m in [-0.9, -0.333, 0.0, 0.5, 0.97_f64] {
+            let factor = corner(0.5, 1.0 - y_m, x_m) + corner(0.5, 1.0 + y_m, x_m);
+            let expected = 0.5 * 3.0 * factor * D65[0];
+            let (x, y) = ((x_m + 2.0) / 4.0, (2.0 - y_m) / 4.0);
+            let ours = value(&sampler, x, y, Channel::A);
+            assert!(
+                (ours / expected - 1.0).abs() < 0.05,
+                "{ours} is not {expected} at {x_m}, {y_m}"
+            );
+        }
+    }
+}
+
+#[test]
 fn a_rectangle_light_is_seen_from_its_front_and_in_a_mirror_and_shines_to_its_front_alone() {
     // From above its back is seen: black. A mirror on the ground under it shows its front.
     let mirror = r#"
