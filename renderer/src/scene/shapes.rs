@@ -38,11 +38,13 @@ impl Objects {
         objects.add_tables((file, palette), "disc", &scene.disc)?;
         objects.add_tables((file, palette), "rectangle", &scene.rectangle)?;
         objects.add_tables((file, palette), "ground", &scene.ground)?;
-        if objects.shapes.is_empty() && scene.mesh.is_empty() {
+        let lights_seen = scene.rectangle_light.len() + scene.sphere_light.len();
+        if objects.shapes.is_empty() && scene.mesh.is_empty() && lights_seen == 0 {
             return Err(InputError::new(
                 file,
                 "no object",
-                "at least one sphere, box, cylinder, cone, disc, rectangle, ground or mesh",
+                "at least one sphere, box, cylinder, cone, disc, rectangle, ground, mesh, rectangle_light or \
+                 sphere_light",
             ));
         }
         Ok(objects)

@@ -347,13 +347,12 @@ fn a_scene_needs_a_light_and_not_too_many() {
 }
 
 #[test]
-fn a_scene_needs_an_object() {
-    let empty = GOOD.split_once("[camera]").unwrap().1;
-    assert!(
-        error_of(&format!("[camera]{empty}"))
-            .unwrap()
-            .contains("found no object")
-    );
+fn a_scene_needs_something_to_be_seen() {
+    let empty = r#"
+camera = { position_m = [0, -5, 1], look_at_m = [0, 0, 0], up = [0, 0, 1], vertical_field_of_view_deg = 30 }
+point_light = [{ position_m = [0, -5, 5], emittance = "D65", intensity = 9 }]
+"#;
+    assert!(error_of(empty).unwrap().contains("found no object"));
 }
 
 #[test]

@@ -303,6 +303,17 @@ reflectance = [[400, 0.5]]
 }
 
 #[test]
+fn a_light_that_is_seen_is_a_scene_of_its_own() {
+    let scene = scene(&format!(
+        r#"{FROM_ABOVE}
+sphere_light = [{{ center_m = [0, 0, 0], radius_m = 0.5, emittance = "D65", luminance = 0.5, samples = 1 }}]"#
+    ));
+    let sampler = sampler(&scene);
+    assert_near(value(&sampler, 0.5, 0.5, Channel::A), 0.5 * D65[0]);
+    assert_eq!(value(&sampler, 0.1, 0.1, Channel::A), 0.0);
+}
+
+#[test]
 fn a_rectangle_light_is_seen_from_its_front_and_in_a_mirror_and_shines_to_its_front_alone() {
     // From above its back is seen: black. A mirror on the ground under it shows its front.
     let mirror = r#"
