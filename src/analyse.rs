@@ -2,16 +2,52 @@
 
 use std::path::Path;
 
-use analysis::{AnalysisOptions, AsymptoteOption, Design, Pilots, TableAnalysis};
-use protocols::Study;
+use analysis::{
+    AnalysisOptions, AsymptoteOption, Decimal, Design, Pilots, ReportSummary, TableAnalysis,
+};
+use protocols::{InputError, Study};
 
-use crate::command_line::{AnovaArguments, BesideAnova, ReportArguments};
+use crate::analysis_arguments::{AnovaArguments, Columns, ReportArguments};
 use crate::console;
 use crate::follow_up;
 use crate::predict::default_file;
+use crate::table_report;
 
 pub(crate) fn report(arguments: &ReportArguments) -> anyhow::Result<()> {
-    let study = Study::read(&arguments.protocol)?;
+    let (protocols, tables): (Vec<_>, Vec<_>) =
+        (arguments.files.iter().cloned()).partition(|file| {
+            file.extension()
+                .is_some_and(|extension| extension == "toml")
+        });
+    let first = arguments.files.first().map_or(Path::new(""), |file| file);
+    let protocol = match protocols.as_slice() {
+        [] => None,
+        [one] => Some(one.as_path()),
+        [_, second, ..] => {
+            let error = InputError::new(second, "a second protocol", "one protocol at most");
+            return Err(error.into());
+        }
+    };
+    match protocol {
+        Some(path) if tables.is_empty() => {
+            if let Some(option) = (arguments.columns.first_given())
+                .or_else(|| arguments.title.as_ref().map(|_| "--title"))
+            {
+                let found = format!("the option {option} and no table");
+                let expected = "a protocol alone, or the tables of ratings after it";
+                return Err(InputError::new(first, found, expected).into());
+            }
+            report_of_study(path, arguments)
+        }
+        _ => {
+            let summary = table_report::write(protocol, &tables, arguments)?;
+            print(&summary)
+        }
+    }
+}
+
+fn report_of_study(path: &Path, arguments: &ReportArguments) -> anyhow::Result<()> {
+    let study = Study::read(path)?;
     let data = arguments.data.of(&study);
     let out = arguments.out.as_deref();
     let predictions = arguments.predictions.as_deref();
@@ -39,7 +75,16 @@ pub(crate) fn write_report(
 ) -> anyhow::Result<()> {
     let usual = Some(default_file(study)).filter(|file| file.is_file());
     let predictions = place.predictions.or(usual.as_deref());
-    let summary = analysis::report_beside(study, data, place.out, pilots, predictions)?;
+    print(&analysis::report_beside(
+        study,
+        data,
+        place.out,
+        pilots,
+        predictions,
+    )?)
+}
+
+fn print(summary: &ReportSummary) -> anyhow::Result<()> {
     for warning in &summary.warnings {
         console::print(format!("warning: {warning}"))?;
     }
@@ -57,21 +102,10 @@ pub(crate) fn anova(arguments: &AnovaArguments) -> anyhow::Result<()> {
         })?;
         return Ok(());
     }
-    let (Some(subject), Some(rating)) = (&arguments.subject, &arguments.rating) else {
-        anyhow::bail!("a table, --subject and --rating are needed");
-    };
-    let design = Design {
-        subject: subject.clone(),
-        rating: rating.clone(),
-        within: arguments.within.clone(),
-        between: arguments.between.clone(),
-        observed: arguments.observed.clone(),
-        sums_of_squares: arguments.sums_of_squares.into(),
-        missing: arguments.missing.into(),
-        filters: arguments.filters.clone(),
-    };
-    let analysis =
-        TableAnalysis::of_tables(&arguments.tables, &design, &options(&arguments.beside))?;
+    let first = arguments.tables.first().map_or(Path::new(""), |file| file);
+    let options = options(arguments);
+    let design = design(first, &arguments.columns)?;
+    let analysis = TableAnalysis::of_tables(&arguments.tables, &design, &options)?;
     console::print(if arguments.json {
         analysis.to_json()
     } else {
@@ -80,18 +114,37 @@ pub(crate) fn anova(arguments: &AnovaArguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn options(beside: &BesideAnova) -> AnalysisOptions {
-    let follow_ups = [
-        &beside.simple,
-        &beside.pairwise,
-        &beside.control,
-        &beside.trends,
-        &beside.contrast,
-    ];
+/// The roles of the columns; `table` is only named in the error.
+pub(crate) fn design(table: &Path, columns: &Columns) -> Result<Design, InputError> {
+    let named = |column: &Option<String>, option: &str, what: &str| {
+        column.clone().ok_or_else(|| {
+            let found = format!("no column named for {what}");
+            InputError::new(table, found, format!("{option} COLUMN"))
+        })
+    };
+    Ok(Design {
+        subject: named(&columns.subject, "--subject", "the subject")?,
+        rating: named(&columns.rating, "--rating", "the rating")?,
+        within: columns.within.clone(),
+        between: columns.between.clone(),
+        observed: columns.observed.clone(),
+        sums_of_squares: columns.sums_of_squares.map(Into::into).unwrap_or_default(),
+        missing: columns.missing.map(Into::into).unwrap_or_default(),
+        filters: columns.filters.clone(),
+        decimal: if columns.decimal_comma {
+            Decimal::Comma
+        } else {
+            Decimal::Point
+        },
+    })
+}
+
+fn options(arguments: &AnovaArguments) -> AnalysisOptions {
+    let beside = &arguments.beside;
     AnalysisOptions {
-        follow_ups: follow_ups.into_iter().flatten().cloned().collect(),
+        follow_ups: beside.follow_ups(),
         confidence: beside.confidence,
-        n_permutations: beside.distribution_free.then_some(beside.permutations),
+        n_permutations: (arguments.distribution_free).then_some(beside.permutations),
         asymptote: beside.asymptote.as_ref().map(|text| {
             let (factor, by) = follow_up::place(text);
             AsymptoteOption { factor, by }

@@ -3,14 +3,13 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use analysis::{EffectScale, PrintedF, RowFilter};
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use analysis::EffectScale;
+use clap::{Args, Parser, Subcommand};
 use protocols::{
-    Channel, Export, FollowUpPlan, Missing, Observer, Quadrature, RayCount, RefinementDriver,
-    Study, SubjectId, SumsOfSquares,
+    Channel, Export, Observer, Quadrature, RayCount, RefinementDriver, Study, SubjectId,
 };
 
-use crate::follow_up;
+use crate::analysis_arguments::{AnovaArguments, ReportArguments};
 
 /// A psychophysics experiment harness: scene, rays, tree, channel images, stimuli, session, ratings, ANOVA,
 /// report.
@@ -49,7 +48,7 @@ pub(crate) enum Command {
     /// How many subjects does the study need? Simulated studies of each size, analysed as the protocol says.
     Power(PowerArguments),
     /// Analyse the ratings of a study and write the report.
-    Report(ReportArguments),
+    Report(Box<ReportArguments>),
     /// Analysis of variance of any table in long format.
     Anova(Box<AnovaArguments>),
     /// The paper's study end to end: render, simulate, report. Needs no display.
@@ -79,6 +78,11 @@ pub(crate) struct DataFolder {
 }
 
 impl DataFolder {
+    /// Whether a folder was named.
+    pub(crate) fn is_named(&self) -> bool {
+        self.named.is_some()
+    }
+
     /// The folder named, or the study's own.
     pub(crate) fn of(&self, study: &Study) -> PathBuf {
         let named = self.named.clone();
@@ -391,159 +395,6 @@ fn share(text: &str) -> Result<f64, String> {
         .ok()
         .filter(|share: &f64| *share > 0.0 && *share < 1.0);
     share.ok_or_else(|| format!("found {text:?}, expected a number above 0 and below 1"))
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct ReportArguments {
-    /// The protocol file.
-    pub(crate) protocol: PathBuf,
-    #[command(flatten)]
-    pub(crate) data: DataFolder,
-    /// Folder for the report [default: reports/STUDY, or reports/STUDY-simulated]
-    #[arg(long)]
-    pub(crate) out: Option<PathBuf>,
-    /// Predictions to draw beside the ratings [default: reports/STUDY-predicted/predictions.csv, if it is there]
-    #[arg(long, value_name = "FILE")]
-    pub(crate) predictions: Option<PathBuf>,
-    /// Analyse trial runs (`run --pilot`) too.
-    #[arg(long)]
-    pub(crate) include_pilot: bool,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct AnovaArguments {
-    /// The table: CSV or TSV with a header line, one rating a row. Several files, such as one for each subject, are one table.
-    #[arg(value_name = "TABLE", required_unless_present = "explain")]
-    pub(crate) tables: Vec<PathBuf>,
-    /// Column that names the subject; @sub takes it from files named sub-01_..., as BIDS has them.
-    #[arg(long, value_name = "COLUMN", required_unless_present = "explain")]
-    pub(crate) subject: Option<String>,
-    /// Column with the rating; COLUMN.KEY for a number in a JSON object, as jsPsych's surveys have it.
-    #[arg(long, value_name = "COLUMN", required_unless_present = "explain")]
-    pub(crate) rating: Option<String>,
-    /// Only rows whose field is this value (or one of VALUE|VALUE), or with != is not. May be repeated.
-    #[arg(long = "where", value_name = "COLUMN=VALUE")]
-    pub(crate) filters: Vec<RowFilter>,
-    /// Columns of the factors of which every subject has seen every level.
-    #[arg(long, value_name = "COLUMNS", value_delimiter = ',')]
-    pub(crate) within: Vec<String>,
-    /// Columns of the factors of which a subject has one level.
-    #[arg(long, value_name = "COLUMNS", value_delimiter = ',')]
-    pub(crate) between: Vec<String>,
-    /// Factors that were observed and not manipulated, for generalized eta squared.
-    #[arg(long, value_name = "COLUMNS", value_delimiter = ',')]
-    pub(crate) observed: Vec<String>,
-    /// Type of the sums of squares, for unbalanced groups.
-    #[arg(long = "type", value_name = "TYPE", default_value = "3")]
-    pub(crate) sums_of_squares: TypeArgument,
-    /// What is done with a subject of whom a rating is missing.
-    #[arg(long, value_name = "WHAT", default_value = "drop")]
-    pub(crate) missing: MissingArgument,
-    #[command(flatten)]
-    pub(crate) beside: BesideAnova,
-    /// Say which designs a printed F value allows, such as "F(12,120)=51.44", and stop.
-    #[arg(long, value_name = "F", conflicts_with_all = ["tables", "subject", "rating"])]
-    pub(crate) explain: Option<PrintedF>,
-    /// Print JSON.
-    #[arg(long)]
-    pub(crate) json: bool,
-}
-
-/// What is computed beside the analysis of variance.
-#[derive(Debug, Args)]
-pub(crate) struct BesideAnova {
-    /// The effect of one factor at each level of another.
-    #[arg(long, value_name = "FACTOR@FACTOR", value_parser = follow_up::simple)]
-    pub(crate) simple: Vec<FollowUpPlan>,
-    /// Every pair of levels of a factor, over all else or at each level of another.
-    #[arg(long, value_name = "FACTOR[@FACTOR]", value_parser = follow_up::pairwise)]
-    pub(crate) pairwise: Vec<FollowUpPlan>,
-    /// Every other level of a factor against one.
-    #[arg(long, value_name = "FACTOR=LEVEL", value_parser = follow_up::control)]
-    pub(crate) control: Vec<FollowUpPlan>,
-    /// Orthogonal polynomials up to a degree (3).
-    #[arg(long, value_name = "FACTOR[:DEGREE]", value_parser = follow_up::trends)]
-    pub(crate) trends: Vec<FollowUpPlan>,
-    /// A contrast of levels by weights that sum to zero, such as "rays:10K=-1,130K=1".
-    #[arg(long, value_name = "FACTOR:LEVEL=WEIGHT,...", value_parser = follow_up::contrast)]
-    pub(crate) contrast: Vec<FollowUpPlan>,
-    /// Friedman's test, aligned ranks and permutation tests too.
-    #[arg(long)]
-    pub(crate) distribution_free: bool,
-    /// Where the curve over a factor flattens, for each level of another.
-    #[arg(long, value_name = "FACTOR[@FACTOR]")]
-    pub(crate) asymptote: Option<String>,
-    /// Ratings closer than this are equivalent.
-    #[arg(long, default_value_t = 1.0, value_parser = positive)]
-    pub(crate) delta: f64,
-    /// The confidence level of intervals.
-    #[arg(long, default_value_t = 0.95, value_parser = confidence)]
-    pub(crate) confidence: f64,
-    /// How many random arrangements a permutation test has where there are too many to try all.
-    #[arg(long, default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(100..=10_000_000))]
-    pub(crate) permutations: u32,
-    /// How often subjects are drawn again for the interval of an asymptote.
-    #[arg(long, default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(200..=10_000_000))]
-    pub(crate) resamples: u32,
-    /// The seed of both.
-    #[arg(long, default_value_t = 1992)]
-    pub(crate) seed: u64,
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    let value = text
-        .parse()
-        .ok()
-        .filter(|value: &f64| *value > 0.0 && value.is_finite());
-    value.ok_or_else(|| format!("found {text:?}, expected a number above 0"))
-}
-
-fn confidence(text: &str) -> Result<f64, String> {
-    let level = text
-        .parse()
-        .ok()
-        .filter(|level: &f64| *level > 0.5 && *level < 1.0);
-    level.ok_or_else(|| {
-        format!("found {text:?}, expected a level above 0.5 and below 1, such as 0.95")
-    })
-}
-
-/// The type of the sums of squares.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum TypeArgument {
-    /// Adjusted for terms that do not contain the effect.
-    #[value(name = "2", alias = "II")]
-    Two,
-    /// Adjusted for all other terms.
-    #[value(name = "3", alias = "III")]
-    Three,
-}
-
-impl From<TypeArgument> for SumsOfSquares {
-    fn from(argument: TypeArgument) -> Self {
-        match argument {
-            TypeArgument::Two => Self::TypeTwo,
-            TypeArgument::Three => Self::TypeThree,
-        }
-    }
-}
-
-/// What is done with a subject of whom a rating is missing.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum MissingArgument {
-    /// The subject is left out, by name.
-    Drop,
-    /// The analysis stops and names the subjects.
-    Fail,
-}
-
-impl From<MissingArgument> for Missing {
-    fn from(argument: MissingArgument) -> Self {
-        match argument {
-            MissingArgument::Drop => Self::Drop,
-            MissingArgument::Fail => Self::Fail,
-        }
-    }
 }
 
 #[derive(Debug, Args)]

@@ -32,11 +32,11 @@ pub(crate) fn control(text: &str) -> Result<FollowUpPlan, String> {
 
 pub(crate) fn trends(text: &str) -> Result<FollowUpPlan, String> {
     let (factor, degrees) = match text.rsplit_once(':') {
-        None => (text, 3),
+        None => (text, None),
         Some((factor, degrees)) => {
             let degrees = degrees.parse().ok();
             let degrees = degrees.ok_or_else(|| expected(text, "FACTOR:DEGREE, such as rays:2"))?;
-            (factor, degrees)
+            (factor, Some(degrees))
         }
     };
     Ok(FollowUpPlan::Trends {

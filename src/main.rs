@@ -4,6 +4,7 @@
 
 mod acuity_comparison;
 mod analyse;
+mod analysis_arguments;
 mod command_line;
 mod console;
 mod exit_code;
@@ -18,6 +19,7 @@ mod replicate;
 mod sit;
 mod station;
 mod stopwatch;
+mod table_report;
 
 use std::process::ExitCode;
 

@@ -36,6 +36,20 @@ pub(crate) fn degrees_of_freedom(df: f64) -> String {
     }
 }
 
+/// How many decimals show differences as small as the smallest of `spreads`: `least`, or more in small units.
+pub(crate) fn decimals_for(spreads: impl Iterator<Item = f64>, least: usize) -> usize {
+    let smallest = spreads
+        .filter(|&spread| spread > 0.0)
+        .fold(f64::INFINITY, f64::min);
+    let (mut decimals, mut unit) = (0, 1.0);
+    while smallest < 10.0 * unit && decimals < 12 {
+        decimals += 1;
+        unit /= 10.0;
+    }
+    // Two digits of the smallest spread; on a scale of whole ratings that is no more than `least`.
+    if smallest < 0.02 { decimals } else { least }
+}
+
 /// A number with a true minus sign.
 pub(crate) fn signed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
@@ -115,6 +129,14 @@ mod tests {
         assert_eq!(p_value(0.9999), "p > .999");
         assert_eq!(fraction(0.837, 2), ".84");
         assert_eq!(fraction(1.0, 2), "1.00");
+    }
+
+    #[test]
+    fn small_units_have_more_decimals() {
+        assert_eq!(decimals_for([1.2, 0.3, 0.0].into_iter(), 2), 2);
+        assert_eq!(decimals_for([0.0].into_iter(), 2), 2);
+        // .0012 and .0015 differ in the fourth decimal.
+        assert_eq!(decimals_for([0.0012, 3.0].into_iter(), 2), 4);
     }
 
     #[test]

@@ -200,10 +200,9 @@ impl PlateauPoints {
         let resampled = sought.resampled(settings);
         let estimates: Vec<(usize, Estimate)> = (sought.curves.iter().zip(&resampled))
             .map(|(curve, resampled)| {
-                let n = curve.ratings.nrows();
-                let [low, high] = expanded_percentile_interval(resampled, n, settings.confidence);
                 let value = linear_plateau(&sought.x, &curve.means()).psi;
-                (n, Estimate { value, low, high })
+                let psi = curve.with_interval(value, resampled, settings.confidence);
+                (curve.ratings.nrows(), psi)
             })
             .collect();
         let difference = difference(&estimates, &resampled, settings.confidence);
@@ -361,27 +360,28 @@ impl Curve {
             .collect()
     }
 
+    /// A plateau point with its interval by the plateau points of subjects drawn again.
+    fn with_interval(&self, value: f64, resampled: &[f64], confidence: f64) -> Estimate {
+        let n = self.ratings.nrows();
+        let [low, high] = expanded_percentile_interval(resampled, n, confidence);
+        Estimate { value, low, high }
+    }
+
     fn asymptote(&self, x: &[f64], resampled: &[f64], settings: AsymptoteSettings) -> Asymptote {
         let means = self.means();
         let fit = linear_plateau(x, &means);
-        let n = self.ratings.nrows();
-        let [low, high] = expanded_percentile_interval(resampled, n, settings.confidence);
         let equivalence = self.equivalence(x, settings.delta);
         let lowest = equivalence.iter().rfind(|test| test.passed);
         Asymptote {
             level: self.level.clone(),
-            n,
+            n: self.ratings.nrows(),
             x: x.to_vec(),
             outcome: match fit.psi {
                 psi if psi <= x[1] => Outcome::AtOrBelowSecondLevel,
                 psi if psi >= x[x.len() - 1] => Outcome::NoPlateauInRange,
                 _ => Outcome::InRange,
             },
-            psi: Estimate {
-                value: fit.psi,
-                low,
-                high,
-            },
+            psi: self.with_interval(fit.psi, resampled, settings.confidence),
             shapes: self.shapes(x, &means),
             means,
             fit,

@@ -294,6 +294,31 @@ impl<'a> Coded<'a> {
         .remedy("give different people different ids, or name the factor in --within"))
     }
 
+    fn nobody_is_complete(&self) -> InputError {
+        let error = InputError::new(
+            self.observations.source(),
+            "no subject with a rating in every cell",
+            format!("subjects with all {} ratings", self.n_cells),
+        );
+        let sizes: Vec<usize> = self.within.iter().map(|f| f.levels.len()).collect();
+        let is_of_groups = |place: usize| {
+            let mut levels = vec![None; self.subjects.len()];
+            (self.subject_of_row.iter().zip(&self.cell_of_row)).all(|(&subject, &cell)| {
+                let level = digits(&sizes, cell)[place];
+                *levels[subject].get_or_insert(level) == level
+            })
+        };
+        let of_groups = (0..sizes.len()).find(|&place| is_of_groups(place));
+        match of_groups.map(|place| &self.within[place].name) {
+            Some(name) => error.remedy(format!(
+                "every subject has one level of {name}: name it in --between"
+            )),
+            None => error.remedy(
+                "check which columns are factors; leave a factor out, and its levels are averaged",
+            ),
+        }
+    }
+
     fn complete_subjects(&self) -> Result<Complete, InputError> {
         let mut sums = vec![Vec::new(); self.subjects.len()];
         let mut n_rows = vec![0_usize; self.subjects.len()];
@@ -324,11 +349,7 @@ impl<'a> Coded<'a> {
             .map(|cells| !cells.is_empty() && cells.iter().all(|&(_, count)| count > 0))
             .collect();
         if !complete.contains(&true) {
-            return Err(InputError::new(
-                self.observations.source(),
-                "no subject with a rating in every cell",
-                format!("subjects with all {} ratings", self.n_cells),
-            ));
+            return Err(self.nobody_is_complete());
         }
         let kept = sums
             .iter()

@@ -154,13 +154,13 @@ impl Comparison {
         }
     }
 
-    /// The fields of a line of text.
-    pub(crate) fn text_fields(&self) -> Vec<String> {
+    /// The fields of a line of text; estimate and interval have `n_decimals`.
+    pub(crate) fn text_fields(&self, n_decimals: usize) -> Vec<String> {
         vec![
             self.label(),
-            format!("{:.3}", self.estimate),
-            format!("{:.3}", self.low),
-            format!("{:.3}", self.high),
+            format!("{:.n_decimals$}", self.estimate),
+            format!("{:.n_decimals$}", self.low),
+            format!("{:.n_decimals$}", self.high),
             decimals(self.t, 2),
             self.df.to_string(),
             optional_p(self.p),

@@ -118,7 +118,7 @@ impl Sections<'_> {
             (
                 "Files",
                 format!(
-                    "<code>report.md</code>, <code>tables.tex</code>, <code>to-paste.txt</code>, <code>anova.json</code>, <code>anova.csv</code>, \
+                    "<code>report.pdf</code>, <code>report.md</code>, <code>tables.tex</code>, <code>to-paste.txt</code>, <code>anova.json</code>, <code>anova.csv</code>, \
                      <code>follow-ups.csv</code>, <code>asymptotes.csv</code>, <code>means.csv</code>, and <code>{0}</code> as \
                      <code>.svg</code>, <code>.pdf</code> and <code>.png</code> (300 dpi) beside this page",
                     figure_name(self.study)

@@ -25,6 +25,18 @@ pub struct Design {
     pub missing: Missing,
     /// Which rows are ratings: those that every filter keeps.
     pub filters: Vec<RowFilter>,
+    /// What parts the whole from the fraction in a rating.
+    pub decimal: Decimal,
+}
+
+/// The sign between the whole and the fraction of a number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Decimal {
+    /// 7.5
+    #[default]
+    Point,
+    /// 7,5
+    Comma,
 }
 
 impl Design {

@@ -6,16 +6,15 @@
 
 use std::fmt::Write as _;
 
-use protocols::{ChannelGroup, RayCount, Scale};
+use protocols::{ChannelGroup, RayCount};
 
+use crate::axis::Axis;
+use crate::figure_frame::{Frame, RIGHT};
 use crate::study_analysis::{ConditionMean, StudyAnalysis};
 
 /// The width of the figure, in user units.
 pub(crate) const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 470.0;
-const LEFT: f64 = 62.0;
-const RIGHT: f64 = 742.0;
-const TOP: f64 = 18.0;
 const BOTTOM: f64 = 404.0;
 /// How far the two curves stand apart, so that their bars do not cover each other.
 const DODGE: f64 = 3.5;
@@ -50,7 +49,7 @@ impl Palette {
 #[derive(Debug)]
 pub(crate) struct Figure<'a> {
     pub(crate) analysis: &'a StudyAnalysis,
-    pub(crate) scale: Scale,
+    pub(crate) axis: Axis,
     pub(crate) confidence: f64,
     /// Who rated, such as `12 subjects`.
     pub(crate) who: &'a str,
@@ -72,14 +71,13 @@ impl Figure<'_> {
         svg
     }
 
+    fn frame(&self) -> Frame {
+        Frame::new(self.axis, BOTTOM, self.palette)
+    }
+
     /// The beginning of a document with this description, and its paper.
     pub(crate) fn opened(&self, label: &str) -> String {
-        format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{label}\" \
-             font-family=\"Ubuntu, 'Helvetica Neue', Helvetica, Arial, sans-serif\" font-size=\"13\">\n\
-             <rect width=\"{WIDTH}\" height=\"{HEIGHT}\" style=\"fill:{}\"/>\n",
-            self.palette.paper
-        )
+        self.frame().opened(HEIGHT, label)
     }
 
     pub(crate) fn x(&self, rays: RayCount) -> f64 {
@@ -97,50 +95,24 @@ impl Figure<'_> {
         } else {
             0.5
         };
-        (RIGHT - LEFT - 2.0 * inset).mul_add(share, LEFT + inset)
+        let left = self.frame().left;
+        (RIGHT - left - 2.0 * inset).mul_add(share, left + inset)
     }
 
+    /// The height of a rating; beyond the axis, of its end.
     pub(crate) fn y(&self, rating: f64) -> f64 {
-        let (lowest, highest) = (f64::from(self.scale.lowest), f64::from(self.scale.highest));
-        let share = (rating - lowest) / (highest - lowest);
-        (BOTTOM - TOP).mul_add(-share, BOTTOM)
+        self.frame().y(rating)
     }
 
     pub(crate) fn axes(&self, svg: &mut String) {
-        let Palette { ink, faint, .. } = self.palette;
-        let step = if self.scale.highest - self.scale.lowest > 5 {
-            2
-        } else {
-            1
-        };
-        for rating in self.scale.ratings().step_by(step) {
-            let y = self.y(f64::from(rating));
-            _ = writeln!(
-                svg,
-                "<line x1=\"{LEFT}\" y1=\"{y:.2}\" x2=\"{RIGHT}\" y2=\"{y:.2}\" style=\"stroke:{faint}\" stroke-width=\"0.8\"/>\
-                 <text x=\"{:.2}\" y=\"{:.2}\" text-anchor=\"end\" style=\"fill:{ink}\">{rating}</text>",
-                LEFT - 9.0,
-                y + 4.5
-            );
-        }
-        for rays in self.analysis.ray_counts() {
-            let x = self.x(rays);
-            _ = writeln!(
-                svg,
-                "<line x1=\"{x:.2}\" y1=\"{BOTTOM}\" x2=\"{x:.2}\" y2=\"{:.2}\" style=\"stroke:{ink}\" stroke-width=\"1\"/>\
-                 <text x=\"{x:.2}\" y=\"{:.2}\" text-anchor=\"middle\" style=\"fill:{ink}\">{rays}</text>",
-                BOTTOM + 5.0,
-                BOTTOM + 21.0
-            );
-        }
-        let (middle, centre) = (f64::midpoint(TOP, BOTTOM), f64::midpoint(LEFT, RIGHT));
-        _ = writeln!(
-            svg,
-            "<path d=\"M{LEFT},{TOP}V{BOTTOM}H{RIGHT}\" fill=\"none\" style=\"stroke:{ink}\" stroke-width=\"1\"/>\
-             <text x=\"{centre}\" y=\"{:.2}\" text-anchor=\"middle\" font-size=\"14\" style=\"fill:{ink}\">Rays for the varied channels</text>\
-             <text transform=\"translate(20 {middle}) rotate(-90)\" text-anchor=\"middle\" font-size=\"14\" style=\"fill:{ink}\">Mean rating</text>",
-            BOTTOM + 47.0
-        );
+        let frame = self.frame();
+        frame.grid(svg);
+        let counts = self.analysis.ray_counts().into_iter();
+        let labels: Vec<(f64, String)> = counts
+            .map(|rays| (self.x(rays), rays.to_string()))
+            .collect();
+        let room = frame.labels(svg, &labels);
+        frame.titles(svg, "Rays for the varied channels", "Mean rating", room);
     }
 
     fn curve(&self, svg: &mut String, group: ChannelGroup) {
@@ -219,12 +191,12 @@ impl Figure<'_> {
 
     fn error_bar(&self, svg: &mut String, x: f64, mean: f64, half: f64) {
         // Beyond the plot a bar is cut, without a cap; ratings cannot lie there.
-        let (low, high) = (f64::from(self.scale.lowest), f64::from(self.scale.highest));
+        let Axis { low, high, .. } = self.axis;
         let cap = 3.0;
         let mut path = format!(
             "M{x:.2},{:.2}V{:.2}",
-            self.y((mean - half).max(low)),
-            self.y((mean + half).min(high))
+            self.y(mean - half),
+            self.y(mean + half)
         );
         for end in [mean - half, mean + half] {
             if (low..=high).contains(&end) {

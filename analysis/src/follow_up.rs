@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::anova::anova;
 use crate::anova_table::EffectRow;
+use crate::apa::decimals_for;
 use crate::cell_matrix::CellMatrix;
 use crate::comparison::Comparison;
 use crate::factor_place::FactorPlace;
@@ -175,11 +176,12 @@ impl FollowUp {
     fn add_trends(
         &mut self,
         cells: &CellMatrix,
-        degrees: usize,
+        degrees: Option<usize>,
         confidence: f64,
     ) -> Result<(), InputError> {
         let factor = FactorPlace::find(cells, self.plan.factor())?;
         let levels = factor.levels(cells);
+        let degrees = degrees.unwrap_or_else(|| (levels.len() - 1).min(3));
         if degrees == 0 || degrees >= levels.len() {
             return Err(FactorPlace::error(
                 cells,
@@ -355,8 +357,10 @@ impl FollowUp {
                 "high",
                 "dav",
             ]);
+            let errors = self.comparisons.iter().map(|one| one.se);
+            let n_decimals = decimals_for(errors, 3);
             for one in &self.comparisons {
-                table.row(&one.text_fields());
+                table.row(&one.text_fields(n_decimals));
             }
             text.push_str(&table.to_text());
         }

@@ -5,15 +5,16 @@ use crate::apa;
 use crate::asymptote::{Asymptote, Asymptotes, Estimate};
 use crate::comparison::Comparison;
 use crate::document::{Section, Style, Table};
+use crate::findings::Findings;
 use crate::follow_up::{FollowUp, SimpleEffect};
 use crate::page::escaped;
 use crate::results_text::effect_name;
-use crate::sections::{Sections, fraction_cell, p_cell};
+use crate::sections::{fraction_cell, p_cell};
 
-impl Sections<'_> {
+impl Findings<'_> {
     /// Where each curve flattens, and how sure that is.
     pub(crate) fn asymptotes(&self) -> Option<Section> {
-        let found = self.analysis.table.asymptotes.as_ref()?;
+        let found = self.table.asymptotes.as_ref()?;
         let mut paragraphs: Vec<String> = (found.curves.iter())
             .map(|curve| self.asymptote_in_words(found, curve))
             .collect();
@@ -92,7 +93,7 @@ impl Sections<'_> {
 
     /// The families of tests that the protocol asks for.
     pub(crate) fn follow_ups(&self) -> Option<Section> {
-        let families = &self.analysis.table.follow_ups;
+        let families = &self.table.follow_ups;
         if families.is_empty() {
             return None;
         }
@@ -150,8 +151,10 @@ impl Sections<'_> {
             columns.extend(has_tukey.then_some("Tukey"));
             columns.extend(["<i>d</i><sub>z</sub>", &interval, "<i>d</i><sub>av</sub>"]);
             let mut table = Table::new(&caption, &columns);
+            let errors = family.comparisons.iter().map(|one| one.se);
+            let decimals = apa::decimals_for(errors, 2);
             for one in &family.comparisons {
-                let mut cells = comparison_cells(one);
+                let mut cells = comparison_cells(one, decimals);
                 if has_tukey {
                     cells.insert(6, p_cell(one.p_tukey));
                 }
@@ -166,7 +169,7 @@ impl Sections<'_> {
 
     /// Permutation tests, aligned ranks and Friedman's test beside the F tests.
     pub(crate) fn distribution_free(&self) -> Option<Section> {
-        let free = self.analysis.table.distribution_free.as_ref()?;
+        let free = self.table.distribution_free.as_ref()?;
         let columns = [
             "Effect",
             "<i>p</i> of <i>F</i> (GG)",
@@ -184,7 +187,7 @@ impl Sections<'_> {
                 .aligned_ranks
                 .iter()
                 .find(|row| row.effect == test.effect);
-            let row = self.analysis.anova.effect(&test.effect);
+            let row = self.table.anova.effect(&test.effect);
             table.row(&[
                 effect_name(&test.effect),
                 p_cell(row.and_then(|row| row.p_gg.or(row.p))),
@@ -212,11 +215,15 @@ impl Sections<'_> {
                 )
             })
             .collect();
-        let section = Section::new("Does the scale matter?").paragraph(
-            "Ratings are whole numbers, and their steps may not be equal. These \
-             tests suppose neither a normal distribution nor sphericity; where they agree with the <i>F</i> tests, that does not \
-             matter here.",
-        );
+        let why = if self.are_whole {
+            "Ratings are whole numbers, and their steps may not be equal. "
+        } else {
+            ""
+        };
+        let section = Section::new("Does the scale matter?").paragraph(format!(
+            "{why}These tests suppose neither a normal distribution nor sphericity; where they agree with the <i>F</i> tests, that \
+             does not matter here."
+        ));
         Some(section.table(table).list(Style::Note, friedman).note(
             "A permutation <i>p</i> cannot be smaller than \
              one over the number of arrangements, twice that where all signs can be turned together.",
@@ -225,14 +232,17 @@ impl Sections<'_> {
 }
 
 /// The cells of one comparison, without Tukey's p.
-fn comparison_cells(one: &Comparison) -> Vec<String> {
+fn comparison_cells(one: &Comparison, decimals: usize) -> Vec<String> {
     let number =
         |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| apa::signed(value, 2));
-    let ends = |low: f64, high: f64| format!("[{}, {}]", apa::signed(low, 2), apa::signed(high, 2));
+    let between = |low: f64, high: f64, decimals: usize| {
+        let [low, high] = [low, high].map(|end| apa::signed(end, decimals));
+        format!("[{low}, {high}]")
+    };
     let mut cells = vec![
         escaped(&one.label()).replace(" - ", " − "),
-        apa::signed(one.estimate, 2),
-        ends(one.low, one.high),
+        apa::signed(one.estimate, decimals),
+        between(one.low, one.high, decimals),
         number(one.t),
         p_cell(one.p),
         p_cell(one.p_holm),
@@ -241,7 +251,7 @@ fn comparison_cells(one: &Comparison) -> Vec<String> {
     cells.push(
         one.dz_low
             .zip(one.dz_high)
-            .map_or_else(|| "–".to_owned(), |(low, high)| ends(low, high)),
+            .map_or_else(|| "–".to_owned(), |(low, high)| between(low, high, 2)),
     );
     cells.push(number(one.dav));
     cells

@@ -2,24 +2,24 @@
 //!
 //! Every sentence is chosen by the numbers: what is harmless is said too, so that silence means nothing.
 
-use protocols::{Correction, Observer};
+use protocols::Correction;
 
 use crate::EffectRow;
 use crate::apa::{self, LeadingTest};
 use crate::document::{Section, Style};
+use crate::findings::Findings;
 use crate::page::escaped;
 use crate::results_text::effect_name;
-use crate::sections::Sections;
 
 /// With fewer observers BT.500 calls a study informal.
 pub(crate) const FEWEST_OBSERVERS: usize = 15;
 /// A share of ratings at one end of the scale that hides differences.
 const CROWDED: f64 = 0.15;
 
-impl Sections<'_> {
+impl Findings<'_> {
     pub(crate) fn fragility(&self) -> Section {
         let mut items = Vec::new();
-        if self.ratings.observer == Observer::Simulated {
+        if self.is_simulated {
             items.push(
                 "<b>Simulated data.</b> Nothing here is evidence about people; the observers share one model of vision, which \
                  makes effects clearer than people’s."
@@ -31,18 +31,18 @@ impl Sections<'_> {
         items.extend(self.of_single_subjects());
         items.extend(self.of_screens());
         items.extend(self.of_distribution());
-        items.push(self.of_the_scale());
+        items.extend(self.of_the_scale());
         items.extend(self.of_asymptotes());
         Section::new("What would make this fragile").list(Style::Plain, items)
     }
 
     fn alpha(&self) -> f64 {
-        1.0 - self.study.protocol.analysis.confidence
+        1.0 - self.plan.confidence
     }
 
     fn of_numbers(&self) -> String {
-        let n = self.analysis.subjects.len();
-        let rows = self.analysis.anova.effects.iter();
+        let n = self.n_subjects;
+        let rows = self.table.anova.effects.iter();
         let most_contrasts = rows.clone().map(|row| row.df_num).max().unwrap_or(0);
         let error_df = rows
             .map(|row| row.df_den / row.df_num.max(1))
@@ -51,12 +51,12 @@ impl Sections<'_> {
         let informal = if n < FEWEST_OBSERVERS {
             format!(
                 "{} are fewer than the {FEWEST_OBSERVERS} that BT.500 asks for",
-                self.who()
+                self.who
             )
         } else {
             format!(
                 "{} are as many as BT.500 asks for ({FEWEST_OBSERVERS}), or more",
-                self.who()
+                self.who
             )
         };
         let singular = if most_contrasts > error_df {
@@ -77,11 +77,11 @@ impl Sections<'_> {
             let found: Vec<bool> = p.into_iter().flatten().map(|p| p < alpha).collect();
             found.contains(&true) && found.contains(&false)
         };
-        let torn: Vec<String> = (self.analysis.anova.effects.iter())
+        let torn: Vec<String> = (self.table.anova.effects.iter())
             .filter(|row| verdicts(row))
             .map(|row| {
                 let uncorrected = row.p.map(apa::p_in_html).unwrap_or_default();
-                let leading = LeadingTest::new(row, self.study.protocol.analysis.correction);
+                let leading = LeadingTest::new(row, self.plan.correction);
                 let leading = leading.map(|test| apa::p_in_html(test.p)).unwrap_or_default();
                 let bound = row.p_lb.map(apa::p_in_html).unwrap_or_default();
                 let name = effect_name(&row.effect);
@@ -94,7 +94,7 @@ impl Sections<'_> {
                 torn.join("; ")
             );
         }
-        let lead = if self.study.protocol.analysis.correction == Correction::None {
+        let lead = if self.plan.correction == Correction::None {
             ", none included"
         } else {
             ""
@@ -105,7 +105,7 @@ impl Sections<'_> {
     }
 
     fn of_single_subjects(&self) -> Option<String> {
-        let all = &self.analysis.fragility.left_out;
+        let all = &self.fragility.left_out;
         if all.is_empty() {
             return None;
         }
@@ -141,7 +141,7 @@ impl Sections<'_> {
     }
 
     fn of_screens(&self) -> Option<String> {
-        let screening = self.analysis.observers.as_ref()?;
+        let screening = self.observers?;
         let rejected: Vec<String> = (screening.observers.iter())
             .filter(|one| one.is_rejected_by_bt500 || one.is_rejected_by_bt1788)
             .map(|one| escaped(&one.subject))
@@ -157,11 +157,11 @@ impl Sections<'_> {
     }
 
     fn of_distribution(&self) -> Option<String> {
-        let free = self.analysis.table.distribution_free.as_ref()?;
-        let (alpha, plan) = (self.alpha(), &self.study.protocol.analysis);
+        let free = self.table.distribution_free.as_ref()?;
+        let (alpha, plan) = (self.alpha(), self.plan);
         let disagree: Vec<String> = (free.permutation.iter())
             .filter(|test| {
-                let row = self.analysis.anova.effect(&test.effect);
+                let row = self.table.anova.effect(&test.effect);
                 let leading = row.and_then(|row| LeadingTest::new(row, plan.correction));
                 leading
                     .zip(test.p)
@@ -180,26 +180,26 @@ impl Sections<'_> {
         })
     }
 
-    fn of_the_scale(&self) -> String {
-        let scale = self.study.protocol.session.scale;
-        let [low, high] = self.analysis.fragility.at_ends;
+    fn of_the_scale(&self) -> Option<String> {
+        let scale = self.scale?;
+        let [low, high] = self.fragility.at_ends;
         let percent = |share: f64| format!("{:.0}%", 100.0 * share);
         let verdict = if low.max(high) > CROWDED {
             "so many at one end hide differences there and shrink the variance"
         } else {
             "too few to hide differences"
         };
-        format!(
+        Some(format!(
             "<b>Ends of the scale.</b> {} of the analysed ratings are {} and {} are {}: {verdict}.",
             percent(low),
             scale.lowest,
             percent(high),
             scale.highest
-        )
+        ))
     }
 
     fn of_asymptotes(&self) -> Option<String> {
-        let found = self.analysis.table.asymptotes.as_ref()?;
+        let found = self.table.asymptotes.as_ref()?;
         let unit = escaped(&found.unit);
         let widths: Vec<String> = (found.curves.iter())
             .map(|curve| {

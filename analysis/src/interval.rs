@@ -1,5 +1,6 @@
 //! Means of the cells with their confidence intervals, between and within subjects.
 
+use crate::anova_table::shortest;
 use crate::cell_matrix::CellMatrix;
 use crate::tail::t_quantile;
 
@@ -20,6 +21,29 @@ pub struct CellSummary {
     pub half_between: Option<f64>,
     /// Half the width of the Cousineau–Morey interval; `None` for one subject or one cell.
     pub half_within: Option<f64>,
+}
+
+impl CellSummary {
+    /// The columns of [`Self::fields`].
+    pub(crate) const COLUMNS: &'static str =
+        "mean,sd,confidence,between_low,between_high,within_low,within_high";
+
+    /// The mean, its spread and the ends of both intervals as fields of CSV; what does not exist is empty.
+    pub(crate) fn fields(&self, confidence: f64) -> [String; 7] {
+        let end = |half: Option<f64>, sign: f64| {
+            half.map(|half| shortest(sign.mul_add(half, self.mean)))
+                .unwrap_or_default()
+        };
+        [
+            shortest(self.mean),
+            self.sd.map(shortest).unwrap_or_default(),
+            shortest(confidence),
+            end(self.half_between, -1.0),
+            end(self.half_between, 1.0),
+            end(self.half_within, -1.0),
+            end(self.half_within, 1.0),
+        ]
+    }
 }
 
 /// Mean and intervals of each cell of each group, groups first.

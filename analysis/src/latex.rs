@@ -9,7 +9,7 @@ impl Document {
     /// Every table as a `table` environment with rules of the package booktabs; long ones break over pages (longtable).
     pub(crate) fn to_latex(&self) -> String {
         let mut text = String::from(
-            "% \\usepackage{booktabs}, \\usepackage{longtable}, \\usepackage{graphicx}; UTF-8\n",
+            "% \\usepackage{booktabs}, \\usepackage{longtable}, \\usepackage{graphicx}; UTF-8; any LaTeX of 2018 or later\n",
         );
         let blocks = self.sections.iter().flat_map(|section| &section.blocks);
         let tables = blocks.filter_map(|block| match block {
@@ -57,7 +57,7 @@ fn table_in_latex(table: &Table, number: usize) -> String {
     } else {
         write!(
             text,
-            "\n\\begin{{table}}\n{caption}\n\\centering\\resizebox{{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}}{{!}}{{%\n\
+            "\n\\begin{{table}}\n{caption}\\smallskip\n\\centering\\resizebox{{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}}{{!}}{{%\n\
              \\begin{{tabular}}{{{alignment}}}\n{head}{rows}\\bottomrule\n\\end{{tabular}}}}\n\\end{{table}}\n"
         )
     };

@@ -11,6 +11,8 @@ use std::f64::consts::{LN_2, PI};
 
 use nalgebra::Complex;
 
+use crate::tail::STIRLING;
+
 /// Points on the upper half of the parabola; the error falls as 2.85^−2N.
 const N_POINTS: u32 = 14;
 const I: Complex<f64> = Complex::new(0.0, 1.0);
@@ -83,16 +85,7 @@ fn ln_gamma(z: Complex<f64>) -> Complex<f64> {
         z += 1.0;
     }
     let square = (z * z).inv();
-    let coefficients = [
-        1.0 / 156.0,
-        -691.0 / 360_360.0,
-        1.0 / 1188.0,
-        -1.0 / 1680.0,
-        1.0 / 1260.0,
-        -1.0 / 360.0,
-        1.0 / 12.0,
-    ];
-    let series = (coefficients.iter()).fold(real(0.0), |sum, c| sum * square + c) / z;
+    let series = (STIRLING.iter()).fold(real(0.0), |sum, c| sum * square + c) / z;
     (z - 0.5) * z.ln() - z + 0.5 * (2.0 * PI).ln() + series - shift
 }
 

@@ -14,6 +14,10 @@ pub struct Observations {
     pub(crate) between: Vec<LabelColumn>,
     pub(crate) within: Vec<LabelColumn>,
     pub(crate) ratings: Vec<Option<f64>>,
+    /// How many rows of the source are no ratings, by the filters.
+    pub(crate) n_filtered: usize,
+    /// Whether a row says that a simulated observer gave it, as our own files do.
+    pub(crate) has_simulated: bool,
 }
 
 impl Observations {
@@ -26,6 +30,8 @@ impl Observations {
             between: columns(between),
             within: columns(within),
             ratings: Vec::new(),
+            n_filtered: 0,
+            has_simulated: false,
         }
     }
 

@@ -4,6 +4,7 @@ use protocols::rating::RatingRow;
 
 use crate::apa;
 use crate::document::{Section, Table};
+use crate::findings::Findings;
 use crate::fragility_section::FEWEST_OBSERVERS;
 use crate::interval::{mean, standard_deviation};
 use crate::page::escaped;
@@ -12,10 +13,10 @@ use crate::sections::Sections;
 use crate::study_analysis::opinion_score;
 use crate::tail::{f_tail, t_quantile};
 
-impl Sections<'_> {
-    pub(crate) fn observers(&self) -> Option<Section> {
-        let screening = self.analysis.observers.as_ref()?;
-        let drifts = self.drifts(screening);
+impl Findings<'_> {
+    /// How the observers agree; `drifts` are how they changed over the session, one for each or none at all.
+    pub(crate) fn agreement(&self, drifts: &[Drift]) -> Option<Section> {
+        let screening = self.observers?;
         let columns = [
             "Observer",
             "above, below",
@@ -30,19 +31,26 @@ impl Sections<'_> {
         let caption = "Each observer beside the others. Above, below: ratings far from the mean opinion (BT.500); <i>r</i>: the \
                        smaller of Pearson’s and Spearman’s correlation with the mean opinions (BT.1788); bias and inconsistency by the \
                        model of P.910, Annex E.";
-        let mut table = Table::new(caption, &columns);
-        for (index, drift) in drifts.iter().enumerate() {
-            table.row(&observer_cells(screening, index, drift));
+        let shown = if drifts.is_empty() { 7 } else { columns.len() };
+        let mut table = Table::new(caption, &columns[..shown]);
+        for index in 0..screening.observers.len() {
+            let mut cells = observer_cells(screening, index);
+            cells.extend(drifts.get(index).into_iter().flat_map(Drift::cells));
+            table.row(&cells);
         }
         let section = Section::new("Can the observers be trusted?");
-        let section = section.paragraph(self.trust_in_words(screening, &drifts));
-        Some(section.table(table).note(
-            "Both screens are reported; neither \
-             was applied: every observer above is in every result. Against random, inverted, constant and half-shuffled \
-             ratings the correlation screen finds nearly all and the kurtosis screen few, so it is the one to act on. The \
-             change over the session is the slope of the ratings, less mean opinion and bias, from the first trial to the \
-             last; slower or faster is the correlation of the logarithm of the answer time with the trial.",
-        ))
+        let section = section.paragraph(self.trust_in_words(screening, drifts));
+        let of_drift = if drifts.is_empty() {
+            ""
+        } else {
+            " The change over the session is the slope of the ratings, less mean opinion and bias, from the first trial to the \
+             last; slower or faster is the correlation of the logarithm of the answer time with the trial."
+        };
+        Some(section.table(table).note(format!(
+            "Both screens are reported; neither was applied: every observer above is in every result. Against random, inverted, \
+             constant and half-shuffled ratings the correlation screen finds nearly all and the kurtosis screen few, so it is the \
+             one to act on.{of_drift}"
+        )))
     }
 
     fn trust_in_words(&self, screening: &ObserverScreening, drifts: &[Drift]) -> String {
@@ -77,10 +85,7 @@ impl Sections<'_> {
         if let Some(sd) = standard_deviation(&changes).filter(|sd| *sd > 0.0) {
             let (count, change) = (changes.len() as f64, mean(&changes));
             let error = sd / count.sqrt();
-            let half = t_quantile(
-                (1.0 - self.study.protocol.analysis.confidence) / 2.0,
-                count - 1.0,
-            ) * error;
+            let half = t_quantile((1.0 - self.plan.confidence) / 2.0, count - 1.0) * error;
             sentences.push(format!(
                 "From the first trial to the last the ratings changed by {} on average, {} CI [{}, {}], {}.",
                 apa::signed(change, 2),
@@ -91,6 +96,14 @@ impl Sections<'_> {
             ));
         }
         sentences.join(" ")
+    }
+}
+
+impl Sections<'_> {
+    /// How the observers agree, and how each changed over the session.
+    pub(crate) fn observers(&self) -> Option<Section> {
+        let drifts = self.drifts(self.analysis.observers.as_ref()?);
+        self.findings().agreement(&drifts)
     }
 
     /// How each observer changed over the session.
@@ -117,7 +130,7 @@ impl Sections<'_> {
     }
 }
 
-fn observer_cells(screening: &ObserverScreening, index: usize, drift: &Drift) -> Vec<String> {
+fn observer_cells(screening: &ObserverScreening, index: usize) -> Vec<String> {
     let (one, model) = (&screening.observers[index], &screening.model);
     let verdict = |is_rejected| {
         let text = if is_rejected {
@@ -126,9 +139,6 @@ fn observer_cells(screening: &ObserverScreening, index: usize, drift: &Drift) ->
             "keeps"
         };
         text.to_owned()
-    };
-    let or = |value: Option<f64>, none: &str| {
-        value.map_or_else(|| none.to_owned(), |value| apa::signed(value, 2))
     };
     let [low, high] = model.inconsistency_ends[index];
     vec![
@@ -143,13 +153,15 @@ fn observer_cells(screening: &ObserverScreening, index: usize, drift: &Drift) ->
             model.bias_half[index]
         ),
         format!("{:.2} [{low:.2}, {high:.2}]", model.inconsistency[index]),
-        or(drift.rating, "–"),
-        or(drift.time, "–"),
     ]
 }
 
+fn or(value: Option<f64>, none: &str) -> String {
+    value.map_or_else(|| none.to_owned(), |value| apa::signed(value, 2))
+}
+
 /// How one observer changed from the first trial to the last.
-struct Drift {
+pub(crate) struct Drift {
     /// The change of the ratings; `None` with fewer than three.
     rating: Option<f64>,
     /// The correlation of the logarithm of the answer time with the trial.
@@ -157,6 +169,10 @@ struct Drift {
 }
 
 impl Drift {
+    fn cells(&self) -> [String; 2] {
+        [or(self.rating, "–"), or(self.time, "–")]
+    }
+
     fn new(residuals: &[f64], ln_times: &[f64]) -> Self {
         let n = residuals.len();
         let trials: Vec<f64> = (0..n).map(|trial| trial as f64).collect();

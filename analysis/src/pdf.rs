@@ -1,4 +1,4 @@
-//! A vector picture as a PDF of one page.
+//! A vector picture as a PDF of one page, and the form of PDF files.
 //!
 //! Filled and stroked paths in plain colours, which is all that our figures are made of; words come as outlines. No
 //! clipping, gradients, images or filters: a figure that had them would lose them.
@@ -21,56 +21,69 @@ pub(crate) fn pdf_of(tree: &Tree) -> Vec<u8> {
         size.width() * POINTS_PER_UNIT,
         size.height() * POINTS_PER_UNIT,
     );
-    let mut page = Page {
-        content: format!("{POINTS_PER_UNIT} 0 0 -{POINTS_PER_UNIT} 0 {height} cm\n"),
-        opacities: Vec::new(),
-    };
-    page.nodes(tree.root().children(), 1.0);
-    let states = joined(
-        page.opacities.iter().enumerate(),
-        |(index, [fill, stroke])| format!("/G{index} << /ca {fill} /CA {stroke} >> "),
-    );
+    let mut canvas = Canvas::default();
+    canvas.picture(tree, [0.0, height], POINTS_PER_UNIT);
     let objects = [
         "<< /Type /Catalog /Pages 2 0 R >>".to_owned(),
         "<< /Type /Pages /Kids [3 0 R] /Count 1 >>".to_owned(),
         format!(
             "<< /Type /Page /Parent 2 0 R /MediaBox [0 0 {width} {height}] /Contents 4 0 R /Resources << /ExtGState << \
-             {states}>> >> >>"
+             {}>> >> >>",
+            canvas.states()
         ),
         format!(
             "<< /Length {} >>\nstream\n{}endstream",
-            page.content.len(),
-            page.content
+            canvas.content.len(),
+            canvas.content
         ),
     ];
-    file_of(&objects)
+    file_of(&objects.map(String::into_bytes), "")
 }
 
-/// The objects, numbered from 1, with the table of their places.
-fn file_of(objects: &[String]) -> Vec<u8> {
-    let mut file = String::from("%PDF-1.7\n");
+/// The objects, numbered from 1, with the table of their places; the first is the catalog. `trailer` is put into the trailer.
+pub(crate) fn file_of(objects: &[Vec<u8>], trailer: &str) -> Vec<u8> {
+    let mut file = b"%PDF-1.7\n".to_vec();
     let mut places = String::new();
-    // Writing to a `String` cannot fail, here and below.
     for (index, object) in objects.iter().enumerate() {
+        // Writing to a `String` cannot fail.
         _ = writeln!(places, "{:010} 00000 n ", file.len());
-        _ = writeln!(file, "{} 0 obj\n{object}\nendobj", index + 1);
+        file.extend(format!("{} 0 obj\n", index + 1).into_bytes());
+        file.extend(object);
+        file.extend(b"\nendobj\n");
     }
     let (start, count) = (file.len(), objects.len() + 1);
-    _ = write!(
-        file,
-        "xref\n0 {count}\n0000000000 65535 f \n{places}trailer\n<< /Size {count} /Root 1 0 R >>\nstartxref\n{start}\n%%EOF\n"
+    let end = format!(
+        "xref\n0 {count}\n0000000000 65535 f \n{places}trailer\n<< /Size {count} /Root 1 0 R {trailer}>>\nstartxref\n{start}\n%%EOF\n"
     );
-    file.into_bytes()
+    file.extend(end.into_bytes());
+    file
 }
 
 /// What is drawn on a page.
-struct Page {
-    content: String,
+#[derive(Debug, Default)]
+pub(crate) struct Canvas {
+    pub(crate) content: String,
     /// Opacities of fill and stroke, by the number of their graphics state.
     opacities: Vec<[f32; 2]>,
 }
 
-impl Page {
+impl Canvas {
+    /// Draws a picture with its upper left corner at a place (y upwards), `scale` points for each of its units.
+    pub(crate) fn picture(&mut self, tree: &Tree, [x, y]: [f32; 2], scale: f32) {
+        // Writing to a `String` cannot fail, here and below.
+        _ = writeln!(self.content, "q {scale} 0 0 -{scale} {x} {y} cm");
+        self.nodes(tree.root().children(), 1.0);
+        self.content.push_str("Q\n");
+    }
+
+    /// The graphics states so far, for a dictionary of resources.
+    pub(crate) fn states(&self) -> String {
+        joined(
+            self.opacities.iter().enumerate(),
+            |(index, [fill, stroke])| format!("/G{index} << /ca {fill} /CA {stroke} >> "),
+        )
+    }
+
     fn nodes(&mut self, nodes: &[Node], opacity: f32) {
         for node in nodes {
             match node {

@@ -33,6 +33,11 @@ impl FigurePicture {
         Ok(Self { tree })
     }
 
+    /// The picture as a tree of paths and texts.
+    pub(crate) const fn tree(&self) -> &usvg::Tree {
+        &self.tree
+    }
+
     /// The PNG, at 300 dots an inch.
     ///
     /// # Errors

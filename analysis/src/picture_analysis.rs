@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 use protocols::{InputError, Missing, StimulusId, Study, StudyImage};
 
 use crate::cell_matrix::missing_ratings;
+use crate::cell_means::{CellMeans, Mean};
 use crate::fragility::Fragility;
 use crate::study_analysis::{
     Incomplete, StudyAnalysis, SubjectRatings, analysed_scale, ratings_by_subject, screening,
@@ -25,21 +26,10 @@ use crate::{
 pub(crate) struct PictureAnalysis {
     /// Subjects, those left out, and the analysis of variance.
     pub(crate) study: StudyAnalysis,
-    /// The names of the within factors of the design.
-    pub(crate) factors: Vec<String>,
-    /// The levels of each of them, in natural order.
-    pub(crate) levels: Vec<Vec<String>>,
     /// Each cell of the design.
-    pub(crate) cells: Vec<Mean<Vec<String>>>,
+    pub(crate) means: CellMeans,
     /// Each picture that is rated.
     pub(crate) images: Vec<Mean<StudyImage>>,
-}
-
-/// The mean rating of something, over subjects.
-#[derive(Clone, Debug)]
-pub(crate) struct Mean<T> {
-    pub(crate) of: T,
-    pub(crate) summary: CellSummary,
 }
 
 impl PictureAnalysis {
@@ -69,27 +59,8 @@ impl PictureAnalysis {
         let opinions = (means.iter())
             .map(|mean| (mean.of.id.clone(), mean.summary.mean))
             .collect();
-        let summaries = cell_summaries(&cells, plan.confidence);
-        let of_cell = |summary: CellSummary| Mean {
-            of: cells
-                .cell_levels(summary.cell)
-                .into_iter()
-                .map(str::to_owned)
-                .collect(),
-            summary,
-        };
         Ok(Self {
-            factors: cells
-                .within
-                .iter()
-                .map(|factor| factor.name.clone())
-                .collect(),
-            levels: cells
-                .within
-                .iter()
-                .map(|factor| factor.levels.clone())
-                .collect(),
-            cells: summaries.into_iter().map(of_cell).collect(),
+            means: CellMeans::new(&cells, plan.confidence),
             images: means,
             study: StudyAnalysis {
                 observers: screening(&ids, &members, study.protocol.session.layout),

@@ -23,11 +23,7 @@ impl Figure<'_> {
                     .filter_map(|rays| {
                         let condition = self.analysis.condition(group, rays)?;
                         let rating = model.ratings.get(&condition.stimulus.id)?;
-                        Some(format!(
-                            "{:.2},{:.2}",
-                            self.x(rays),
-                            self.y(self.held(*rating))
-                        ))
+                        Some(format!("{:.2},{:.2}", self.x(rays), self.y(*rating)))
                     })
                     .collect();
                 // Writing to a `String` cannot fail, here and below.
@@ -53,11 +49,6 @@ impl Figure<'_> {
         self.predicted_legend(&mut svg, predictions);
         svg.push_str("</svg>\n");
         svg
-    }
-
-    /// A rating held to the scale.
-    fn held(&self, rating: f64) -> f64 {
-        rating.clamp(f64::from(self.scale.lowest), f64::from(self.scale.highest))
     }
 
     fn predicted_legend(&self, svg: &mut String, predictions: &Predictions) {

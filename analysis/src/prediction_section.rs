@@ -50,7 +50,7 @@ impl Sections<'_> {
         }
         section.table(table).note(
             "Each model’s difference from the reference is stretched so that no difference (or the ten anchor) has the highest rating \
-             and the zero anchor the lowest, held to the scale in the figure: the shape of the curves is predicted, not how people use a scale. \
+             and the zero anchor the lowest; what differs more than the zero anchor has the lowest too. The shape of the curves is predicted, not how people use a scale. \
              Simulated observers are ColorVideoVDP with noise, so their agreement with it is no evidence.",
         )
     }

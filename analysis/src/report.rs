@@ -6,9 +6,10 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use protocols::{Access, Observer, Scale, Stimuli, Study, write_atomically};
+use protocols::{Observer, Stimuli, Study};
 
 use crate::anova_table::{quoted, shortest};
+use crate::axis::Axis;
 use crate::cell_figure::CellFigure;
 use crate::data_sections::figure_name;
 use crate::document::Document;
@@ -17,6 +18,7 @@ use crate::picture::FigurePicture;
 use crate::picture_analysis::PictureAnalysis;
 use crate::picture_sections;
 use crate::predictions::Predictions;
+use crate::report_files::{ReportFiles, write_files};
 use crate::sections::Sections;
 use crate::study_analysis::{StudyAnalysis, analysed_scale};
 use crate::study_ratings::{Pilots, StudyRatings};
@@ -81,17 +83,9 @@ pub fn report_beside(
         || study.default_report_dir(ratings.observer),
         Path::to_owned,
     );
-    let mut written = Vec::new();
-    for (name, bytes) in files {
-        let file = out_dir.join(name);
-        if let Err(source) = write_atomically(&file, &bytes, Access::Owner) {
-            return Err(AnalysisError::Write { file, source });
-        }
-        written.push(file);
-    }
     Ok(ReportSummary {
         page: out_dir.join("report.html"),
-        files: written,
+        files: write_files(&out_dir, files)?,
         observer: ratings.observer,
         n_subjects: anova_of.subjects.len(),
         anova: anova_of.anova,
@@ -114,10 +108,10 @@ fn of_rendered(
     let who = ratings.who(analysis.subjects.len());
     let means = (analysis.conditions.iter())
         .map(|condition| (condition.mean, condition.half_within.unwrap_or(0.0)));
-    let scale = figure_scale(study, means);
+    let axis = figure_axis(study, means);
     let figure = |palette: Palette| Figure {
         analysis: &analysis,
-        scale,
+        axis,
         confidence: study.protocol.analysis.confidence,
         who: &who,
         palette,
@@ -154,13 +148,14 @@ fn of_pictures(
     predictions: Option<&Predictions>,
 ) -> Result<Contents, AnalysisError> {
     let pictures = PictureAnalysis::new(study, ratings)?;
-    let means = (pictures.cells.iter())
-        .map(|cell| (cell.summary.mean, cell.summary.half_within.unwrap_or(0.0)));
-    let scale = figure_scale(study, means);
+    let means = pictures.means.cells.iter();
+    let means = means.map(|cell| (cell.summary.mean, cell.half().unwrap_or(0.0)));
+    let axis = figure_axis(study, means);
     let figure = |palette: Palette| {
         let figure = CellFigure {
-            pictures: &pictures,
-            scale,
+            means: &pictures.means,
+            axis,
+            measure: "Mean rating",
             palette,
         };
         figure.to_svg()
@@ -183,48 +178,33 @@ fn of_pictures(
     })
 }
 
-/// Every file of a report, the page first.
+/// Every file of a study's report, the page first.
 fn files(
     sections: &Sections<'_>,
     document: &Document,
     means_csv: String,
     figure_svg: String,
 ) -> Result<Vec<(String, Vec<u8>)>, AnalysisError> {
-    let table = &sections.analysis.table;
-    let picture = FigurePicture::new(&figure_svg)?;
-    let name = figure_name(sections.study);
-    let text = |name: &str, text: String| (name.to_owned(), text.into_bytes());
-    Ok(vec![
-        text("report.html", document.to_html()),
-        text("report.md", document.to_markdown()),
-        text("tables.tex", document.to_latex()),
-        text("to-paste.txt", sections.to_paste_as_text()),
-        text("anova.json", table.to_json()),
-        text("anova.csv", table.anova.to_csv()),
-        text("follow-ups.csv", table.follow_ups_csv()),
-        text("asymptotes.csv", table.asymptotes_csv()),
-        text("means.csv", means_csv),
-        (format!("{name}.png"), picture.to_png()?),
-        (format!("{name}.pdf"), picture.to_pdf()),
-        text(&format!("{name}-outlined.svg"), picture.to_outlines()),
-        text(&format!("{name}.svg"), figure_svg),
-    ])
+    let contents = ReportFiles {
+        document,
+        table: &sections.analysis.table,
+        to_paste: sections.to_paste_as_text(),
+        means_csv,
+        figure: (figure_name(sections.study), figure_svg),
+    };
+    contents.files()
 }
 
-/// The ends of a figure's axis: those of the scale, but of differences of pairs whole numbers about the intervals.
-fn figure_scale(study: &Study, means: impl Iterator<Item = (f64, f64)>) -> Scale {
-    if let Some(scale) = analysed_scale(study) {
-        return scale;
+/// The axis of a figure: the scale, but of differences of pairs a part about the intervals.
+fn figure_axis(study: &Study, means: impl Iterator<Item = (f64, f64)>) -> Axis {
+    match analysed_scale(study) {
+        Some(scale) => Axis::of_scale(scale),
+        None => Axis::around(
+            means
+                .flat_map(|(mean, half)| [mean - half, mean + half])
+                .chain([-1.0, 1.0]),
+        ),
     }
-    let [low, high] = means.fold([-1.0_f64, 1.0_f64], |[low, high], (mean, half)| {
-        [low.min(mean - half), high.max(mean + half)]
-    });
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "no further apart than the ends of a scale"
-    )]
-    let [lowest, highest] = [low.floor() as i32, high.ceil() as i32];
-    Scale { lowest, highest }
 }
 
 /// One line for each image: its mean, and the ends of both intervals.

@@ -149,18 +149,18 @@ fn interval(difference: &Difference, confidence: f64) -> String {
 pub(crate) fn sphericity(anova: &AnovaTable, correction: Correction) -> String {
     let lead = match correction {
         Correction::None => {
-            "The protocol asks for no correction of the degrees of freedom; the corrected values stand beside."
+            "As planned, the degrees of freedom are not corrected; the corrected values stand beside."
         }
         Correction::GreenhouseGeisser => {
-            "The Greenhouse–Geisser correction leads, as the protocol states: it is applied to every effect with more than \
+            "The Greenhouse–Geisser correction leads, as planned: it is applied to every effect with more than \
              two levels and does not wait for a test of sphericity."
         }
         Correction::HuynhFeldt => {
-            "The Huynh–Feldt correction (Lecoutre’s form) leads, as the protocol states: it is applied to every effect with \
+            "The Huynh–Feldt correction (Lecoutre’s form) leads, as planned: it is applied to every effect with \
              more than two levels and does not wait for a test of sphericity."
         }
         Correction::ChiMuller => {
-            "The Chi–Muller correction leads, as the protocol states: it is applied to every effect with more than two levels \
+            "The Chi–Muller correction leads, as planned: it is applied to every effect with more than two levels \
              and does not wait for a test of sphericity."
         }
     };
@@ -170,9 +170,13 @@ pub(crate) fn sphericity(anova: &AnovaTable, correction: Correction) -> String {
             // Writing to a `String` cannot fail.
             _ = write!(
                 text,
-                " Mauchly’s test for {}: <i>W</i> = {}, {}.",
+                " Mauchly’s test for {}: <i>W</i> {}, {}.",
                 effect_name(&row.effect),
-                apa::fraction(w, 3),
+                if w < 0.0005 {
+                    "&lt; .001".to_owned()
+                } else {
+                    format!("= {}", apa::fraction(w, 3))
+                },
                 apa::p_in_html(p)
             );
         }

@@ -8,6 +8,47 @@ enum Piece<'a> {
     Tag(&'a str),
 }
 
+/// How a part of a text looks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Look {
+    pub(crate) is_bold: bool,
+    pub(crate) is_italic: bool,
+    pub(crate) is_code: bool,
+    pub(crate) place: Place,
+}
+
+/// Whether a part of a text stands below or above the line.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Place {
+    #[default]
+    Line,
+    Below,
+    Above,
+}
+
+/// The text in parts of one look each, with the signs that entities stand for.
+pub(crate) fn runs(rich: &str) -> Vec<(Look, String)> {
+    let (mut look, mut runs) = (Look::default(), Vec::new());
+    for piece in pieces(rich) {
+        match piece {
+            Piece::Text(text) => runs.push((look, unescaped(text))),
+            Piece::Tag(tag) => {
+                let is_open = !tag.starts_with('/');
+                match tag.trim_start_matches('/') {
+                    "b" | "strong" => look.is_bold = is_open,
+                    "i" | "em" => look.is_italic = is_open,
+                    "code" => look.is_code = is_open,
+                    "sub" if is_open => look.place = Place::Below,
+                    "sup" if is_open => look.place = Place::Above,
+                    "sub" | "sup" => look.place = Place::Line,
+                    _ => {}
+                }
+            }
+        }
+    }
+    runs
+}
+
 /// The text without its tags and with the signs that entities stand for.
 pub(crate) fn plain(rich: &str) -> String {
     let texts = pieces(rich).into_iter().map(|piece| match piece {
@@ -107,6 +148,32 @@ mod tests {
     use super::*;
 
     const TEST: &str = "<i>F</i>(1,\u{a0}11)\u{a0}= 137.8, <i>p</i>\u{a0}&lt;\u{a0}.001, η²<sub>p</sub> = .93 &amp; a_b 50%";
+
+    #[test]
+    fn parts_have_the_look_of_their_tags() {
+        let found = runs("a <i>b</i><sub>c</sub> &lt; <b><i>d</i></b>");
+        let plain = Look::default();
+        let italic = Look {
+            is_italic: true,
+            ..plain
+        };
+        let below = Look {
+            place: Place::Below,
+            ..plain
+        };
+        let both = Look {
+            is_bold: true,
+            ..italic
+        };
+        let expected = [
+            (plain, "a "),
+            (italic, "b"),
+            (below, "c"),
+            (plain, " < "),
+            (both, "d"),
+        ];
+        assert_eq!(found, expected.map(|(look, text)| (look, text.to_owned())));
+    }
 
     #[test]
     fn each_notation_says_the_same() {

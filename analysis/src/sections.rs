@@ -1,18 +1,17 @@
 //! The sections of a report on rendered images, and what they share with a report on own pictures.
 
-use protocols::{ChannelGroup, Correction, Observer, PublishedEffect, Study};
+use protocols::{ChannelGroup, Observer, Study};
 
-use crate::apa::{self, LeadingTest};
+use crate::apa;
 use crate::data_sections::figure_name;
 use crate::document::{Block, Document, Section, Style, Table};
+use crate::findings::Findings;
 use crate::page::escaped;
-use crate::results_text::{effect_name, key_result, printed_designs, remarks, sphericity};
-use crate::study_analysis::{ConditionMean, StudyAnalysis};
+use crate::results_text::key_result;
+use crate::study_analysis::{ConditionMean, StudyAnalysis, analysed_scale};
 use crate::study_in_words::design_in_words;
 use crate::study_ratings::StudyRatings;
-use crate::tail::f_tail;
 use crate::text_table::p_text;
-use crate::{EffectRow, PrintedF};
 
 /// All that the sections speak of.
 pub(crate) struct Sections<'a> {
@@ -41,20 +40,21 @@ impl Sections<'_> {
         figure: Section,
         means: Vec<Section>,
     ) -> Document {
+        let findings = self.findings();
         let before = [
             self.banners(),
             Some(result),
             Some(self.the_study()),
             Some(figure),
-            Some(self.anova()),
-            self.published(),
-            self.asymptotes(),
+            Some(findings.anova()),
+            findings.published(),
+            findings.asymptotes(),
         ];
         let after = [
-            self.follow_ups(),
-            self.distribution_free(),
+            findings.follow_ups(),
+            findings.distribution_free(),
             self.observers(),
-            Some(self.fragility()),
+            Some(findings.fragility()),
             Some(self.deviations()),
             Some(self.quality()),
             Some(self.to_paste()),
@@ -62,6 +62,23 @@ impl Sections<'_> {
         ];
         let sections = before.into_iter().flatten().chain(means);
         self.with_head(sections.chain(after.into_iter().flatten()).collect())
+    }
+
+    /// What the analysis found, for the sections that any table has.
+    pub(crate) fn findings(&self) -> Findings<'_> {
+        let plan = &self.study.protocol.analysis;
+        Findings {
+            plan,
+            table: &self.analysis.table,
+            fragility: &self.analysis.fragility,
+            observers: self.analysis.observers.as_ref(),
+            n_subjects: self.analysis.subjects.len(),
+            n_groups: if plan.between.is_empty() { 1 } else { 2 },
+            who: self.who(),
+            scale: analysed_scale(self.study),
+            is_simulated: self.ratings.observer == Observer::Simulated,
+            are_whole: true,
+        }
     }
 
     pub(crate) fn percent(&self) -> String {
@@ -120,13 +137,7 @@ impl Sections<'_> {
                     .to_owned(),
             );
         }
-        if self.analysis.subjects.len() < 6 {
-            banners.push(format!(
-                "<strong>FEW SUBJECTS.</strong> With {}, every test and interval below has little \
-                 power and rests on its assumptions.",
-                self.who()
-            ));
-        }
+        banners.extend(self.findings().too_few());
         let section = Section::without_heading().paragraphs(Style::Banner, banners);
         (!section.blocks.is_empty()).then_some(section)
     }
@@ -166,197 +177,6 @@ impl Sections<'_> {
             file: figure_name(self.study).to_owned(),
             caption,
         })
-    }
-
-    pub(crate) fn anova(&self) -> Section {
-        let remarks = remarks(&self.analysis.anova);
-        let correction = self.study.protocol.analysis.correction;
-        Section::new("Analysis of variance")
-            .paragraph(format!(
-                "{}{}",
-                sphericity(&self.analysis.anova, correction),
-                self.exclusions()
-            ))
-            .table(self.tests(correction))
-            .table(self.corrections())
-            .note(
-                "η²<sub>p</sub>, η²<sub>G</sub>, ω²<sub>p</sub>: partial and generalized eta squared, partial \
-                 omega squared. The Huynh–Feldt ε is Lecoutre’s; it and Chi–Muller’s stand as they come out, above 1 they count as 1. \
-                 The p of Mauchly’s W is by its exact law. A dash marks what does not exist.",
-            )
-            .list(
-                Style::Note,
-                remarks.iter().map(|remark| escaped(remark)).collect(),
-            )
-    }
-
-    /// F, the uncorrected and the leading p, and the effect sizes.
-    fn tests(&self, correction: Correction) -> Table {
-        let caption = format!(
-            "Analysis of variance, type {}, of the ratings of {}.",
-            self.analysis.anova.sums_of_squares.numeral(),
-            self.who()
-        );
-        let columns = [
-            "Effect",
-            "<i>df</i>",
-            "<i>F</i>",
-            "<i>p</i>",
-            "ε",
-            "<i>p</i>",
-            "η²<sub>p</sub>",
-            "η²<sub>G</sub>",
-            "ω²<sub>p</sub>",
-        ];
-        let leading = match correction {
-            Correction::None => "no correction",
-            Correction::GreenhouseGeisser => "Greenhouse–Geisser",
-            Correction::HuynhFeldt => "Huynh–Feldt",
-            Correction::ChiMuller => "Chi–Muller",
-        };
-        let mut table = Table::new(&caption, &columns).grouped(&[
-            ("", 1),
-            ("uncorrected", 3),
-            (&format!("{leading} (leads)"), 2),
-            ("effect size", 3),
-        ]);
-        for row in &self.analysis.anova.effects {
-            let leading = LeadingTest::new(row, correction);
-            table.row(&[
-                effect_name(&row.effect),
-                format!("{}, {}", row.df_num, row.df_den),
-                number_cell(row.f, 2),
-                p_cell(row.p),
-                number_cell(leading.map(|test| test.epsilon), 3),
-                p_cell(leading.map(|test| test.p)),
-                fraction_cell(row.pes, 3),
-                fraction_cell(row.ges, 3),
-                fraction_cell(row.omega2, 3),
-            ]);
-        }
-        table
-    }
-
-    /// Every correction, and Mauchly's test.
-    fn corrections(&self) -> Table {
-        let columns = [
-            "Effect", "ε", "<i>p</i>", "ε", "<i>p</i>", "ε", "<i>p</i>", "ε", "<i>p</i>",
-            "<i>W</i>", "<i>p</i>",
-        ];
-        let caption = "The same tests under each correction for sphericity.";
-        let mut table = Table::new(caption, &columns).grouped(&[
-            ("", 1),
-            ("Greenhouse–Geisser", 2),
-            ("Huynh–Feldt", 2),
-            ("Chi–Muller", 2),
-            ("lower bound", 2),
-            ("Mauchly", 2),
-        ]);
-        for row in &self.analysis.anova.effects {
-            table.row(&[
-                effect_name(&row.effect),
-                number_cell(row.gg_epsilon, 3),
-                p_cell(row.p_gg),
-                number_cell(row.hf_epsilon, 3),
-                p_cell(row.p_hf),
-                number_cell(row.cm_epsilon, 3),
-                p_cell(row.p_cm),
-                number_cell(row.lb_epsilon, 3),
-                p_cell(row.p_lb),
-                fraction_cell(row.mauchly_w, 3),
-                p_cell(row.mauchly_p_exact),
-            ]);
-        }
-        table
-    }
-
-    fn exclusions(&self) -> String {
-        let sentences: Vec<String> = (self.study.protocol.analysis.exclude.iter())
-            .map(|exclusion| {
-                format!(
-                    " Of the factor {}, {} is left out: {}.",
-                    escaped(&exclusion.factor),
-                    escaped(&exclusion.levels.join(", ")),
-                    escaped(&exclusion.reason)
-                )
-            })
-            .collect();
-        sentences.concat()
-    }
-
-    pub(crate) fn published(&self) -> Option<Section> {
-        let published = &self.study.protocol.analysis.published;
-        if published.is_empty() {
-            return None;
-        }
-        let table = self.published_table(published);
-        let n_groups = if self.study.protocol.analysis.between.is_empty() {
-            1
-        } else {
-            2
-        };
-        let df_error = self.analysis.subjects.len().saturating_sub(n_groups);
-        let designs =
-            printed_designs(published, &self.who(), n_groups, df_error).unwrap_or_default();
-        let section = Section::new("Beside the paper")
-            .paragraph(format!(
-                "The paper prints <i>F</i> values and bounds on <i>p</i>; the <i>p</i> and η²<sub>p</sub> in the table follow from \
-                 <i>F</i> and its degrees of freedom. {designs}"
-            ))
-            .table(table);
-        let allowed = allowed_designs(published);
-        Some(if allowed.is_empty() {
-            section
-        } else {
-            section
-                .note("What the printed degrees of freedom allow, in one group or two:")
-                .list(Style::Note, allowed)
-        })
-    }
-
-    /// The printed tests beside those of this data set.
-    fn published_table(&self, published: &[PublishedEffect]) -> Table {
-        let columns = [
-            "Effect",
-            "<i>F</i>",
-            "<i>p</i>",
-            "η²<sub>p</sub>",
-            "<i>F</i>",
-            "<i>p</i>",
-            "η²<sub>p</sub>",
-        ];
-        let mut table = Table::new(
-            "Printed test statistics beside those of this data set, all without correction.",
-            &columns,
-        )
-        .grouped(&[("", 1), ("as printed", 3), ("here", 3)]);
-        for effect in published {
-            let explained = effect.df_num * effect.f;
-            let pes = explained / (explained + effect.df_den);
-            let mut cells = vec![
-                effect_name(&effect.effect),
-                f_with_df(effect.f, effect.df_num, effect.df_den),
-                p_cell(Some(f_tail(effect.f, effect.df_num, effect.df_den))),
-                apa::fraction(pes, 3),
-            ];
-            match self.analysis.anova.effect(&effect.effect) {
-                Some(EffectRow {
-                    df_num,
-                    df_den,
-                    f: Some(f),
-                    p,
-                    pes,
-                    ..
-                }) => cells.extend([
-                    f_with_df(*f, *df_num as f64, *df_den as f64),
-                    p_cell(*p),
-                    fraction_cell(*pes, 3),
-                ]),
-                _ => cells.extend(["–", "–", "–"].map(str::to_owned)),
-            }
-            table.row(&cells);
-        }
-        table
     }
 
     fn means(&self) -> Section {
@@ -442,34 +262,6 @@ fn mean_cells(condition: Option<&ConditionMean>) -> [String; 4] {
         half(condition.half_between),
         half(condition.half_within),
     ]
-}
-
-/// For each printed F, the subjects, levels and groups that its degrees of freedom allow, up to two groups.
-fn allowed_designs(published: &[PublishedEffect]) -> Vec<String> {
-    let whole = |df: f64| -> Option<u32> { format!("{df}").parse().ok() };
-    (published.iter())
-        .filter_map(|effect| {
-            let printed = PrintedF {
-                df_num: whole(effect.df_num)?,
-                df_den: whole(effect.df_den)?,
-                f: Some(effect.f),
-            };
-            let few = printed
-                .designs()
-                .into_iter()
-                .filter(|design| design.n_groups <= 2);
-            let designs: Vec<String> = few.map(|design| design.to_string()).collect();
-            let designs = escaped(&designs.join("; ")).replace(" x ", " × ");
-            Some(format!(
-                "{}, {printed}: {designs}.",
-                effect_name(&effect.effect)
-            ))
-        })
-        .collect()
-}
-
-fn f_with_df(f: f64, df_num: f64, df_den: f64) -> String {
-    format!("{f:.2} ({df_num}, {df_den})")
 }
 
 pub(crate) fn number_cell(value: Option<f64>, decimals: usize) -> String {

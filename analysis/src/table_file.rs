@@ -14,7 +14,9 @@ use std::path::Path;
 
 use protocols::{InputError, ReadError};
 
-use crate::{AnalysisError, AnovaTable, CellMatrix, Design, Observations, RowFilter, anova};
+use crate::{
+    AnalysisError, AnovaTable, CellMatrix, Decimal, Design, Observations, RowFilter, anova,
+};
 
 /// Ratings larger than this have squares that leave the range of numbers.
 const LARGEST_RATING: f64 = 1e100;
@@ -62,13 +64,7 @@ fn read_table(
     let kind = "a table with a header (CSV or TSV)";
     let bytes = fs::read(path).map_err(|error| ReadError::from_io(path, kind, error))?;
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
-    let text = std::str::from_utf8(bytes).map_err(|error| {
-        let before = String::from_utf8_lossy(&bytes[..error.valid_up_to()]);
-        let line = before.matches('\n').count() + 1;
-        InputError::new(path, "bytes that are not UTF-8", kind)
-            .at(format!("line {line}"))
-            .remedy("save the table as UTF-8")
-    })?;
+    let text = text_of(path, bytes)?;
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(delimiter(path, text))
         .from_reader(text.as_bytes());
@@ -82,6 +78,8 @@ fn read_table(
         n_rows += 1;
         if columns.is_kept(&record) {
             columns.read(&record, observations)?;
+        } else {
+            observations.n_filtered += 1;
         }
         for ((place, _), values) in columns.filters.iter().zip(&mut values) {
             if values.len() < 8 {
@@ -105,6 +103,28 @@ fn read_table(
     Err(error
         .remedy(format!("mend --where: {}", seen.join("; ")))
         .into())
+}
+
+/// The text of a file; a workbook, UTF-16 and other encodings are refused by name.
+fn text_of<'b>(path: &Path, bytes: &'b [u8]) -> Result<&'b str, InputError> {
+    let kind = "a table with a header (CSV or TSV) in UTF-8";
+    match bytes {
+        [b'P', b'K', 3, 4, ..] | [0xd0, 0xcf, 0x11, 0xe0, ..] => {
+            let error = InputError::new(path, "a workbook or another packed file", kind);
+            Err(error.remedy("save the sheet as CSV (UTF-8)"))
+        }
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => {
+            let error = InputError::new(path, "text in UTF-16", kind);
+            Err(error.remedy("save the table as UTF-8"))
+        }
+        _ => std::str::from_utf8(bytes).map_err(|error| {
+            let before = String::from_utf8_lossy(&bytes[..error.valid_up_to()]);
+            let line = before.matches('\n').count() + 1;
+            InputError::new(path, "bytes that are not UTF-8", kind)
+                .at(format!("line {line}"))
+                .remedy("save the table as UTF-8")
+        }),
+    }
 }
 
 /// What parts the columns: a tab, a comma, or a semicolon, by the name and the first line.
@@ -161,6 +181,8 @@ struct Columns<'a> {
     factors: Vec<usize>,
     rating: Rating,
     filters: Vec<(usize, &'a RowFilter)>,
+    /// Where our own files say whether a person rated.
+    observer: Option<usize>,
 }
 
 impl<'a> Columns<'a> {
@@ -184,6 +206,7 @@ impl<'a> Columns<'a> {
             filters: filters
                 .map(|filter| Ok((index_of(&filter.column)?, filter)))
                 .collect::<Result<_, InputError>>()?,
+            observer: header.iter().position(|name| name == "observer"),
         })
     }
 
@@ -210,6 +233,8 @@ impl<'a> Columns<'a> {
         } else {
             Some(self.rating(record, text.trim())?)
         };
+        let is_simulated = |place: usize| &record[place] == "simulated";
+        into.has_simulated |= self.observer.is_some_and(is_simulated);
         into.push(subject, levels, rating);
         Ok(())
     }
@@ -236,9 +261,19 @@ impl<'a> Columns<'a> {
 
     fn rating(&self, record: &csv::StringRecord, text: &str) -> Result<f64, InputError> {
         let is_usable = |rating: &f64| rating.abs() <= LARGEST_RATING;
-        text.parse().ok().filter(is_usable).ok_or_else(|| {
+        let parsed = |text: &str| text.parse().ok().filter(is_usable);
+        let with_point = || parsed(&text.replacen(',', ".", 1));
+        let rating = match self.design.decimal {
+            Decimal::Point => parsed(text),
+            Decimal::Comma => with_point(),
+        };
+        rating.ok_or_else(|| {
             let expected = "a number (with a decimal point, not a comma), or NA";
-            self.wrong(record, self.rating.column, &self.design.rating, expected)
+            let error = self.wrong(record, self.rating.column, &self.design.rating, expected);
+            match with_point() {
+                Some(_) => error.remedy("if the comma is a decimal one, say --decimal-comma"),
+                None => error,
+            }
         })
     }
 

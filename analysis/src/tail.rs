@@ -84,6 +84,17 @@ fn ln_incomplete_beta(x: f64, y: f64, a: f64, b: f64) -> f64 {
     }
 }
 
+/// The coefficients of Stirling's series of ln Gamma: Bernoulli numbers over 2k (2k - 1), from the last term to the first.
+pub(crate) const STIRLING: [f64; 7] = [
+    1.0 / 156.0,
+    -691.0 / 360_360.0,
+    1.0 / 1188.0,
+    -1.0 / 1680.0,
+    1.0 / 1260.0,
+    -1.0 / 360.0,
+    1.0 / 12.0,
+];
+
 /// `ln Gamma(x) - ((x - 1/2) ln x - x + ln(2 pi) / 2)`.
 fn stirling_remainder(x: f64) -> f64 {
     let mut x = x;
@@ -93,17 +104,7 @@ fn stirling_remainder(x: f64) -> f64 {
         x += 1.0;
     }
     let square = (x * x).recip();
-    // Bernoulli numbers over 2k (2k - 1), from the last term to the first.
-    let coefficients = [
-        1.0 / 156.0,
-        -691.0 / 360_360.0,
-        1.0 / 1188.0,
-        -1.0 / 1680.0,
-        1.0 / 1260.0,
-        -1.0 / 360.0,
-        1.0 / 12.0,
-    ];
-    remainder + coefficients.iter().fold(0.0, |sum, c| sum * square + c) / x
+    remainder + STIRLING.iter().fold(0.0, |sum, c| sum * square + c) / x
 }
 
 /// The continued fraction of `I_x(a, b)` by Lentz's method.

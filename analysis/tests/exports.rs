@@ -59,6 +59,10 @@ fn each_program_s_export_holds_the_same_ratings() {
             design("participant", "slider.response", &["trials.thisN!="]),
         ),
         ("bids", design("@sub", "value", &["trial_type=rating"])),
+        (
+            "jspsych-8.3.0.csv",
+            design("who", "response", &["task=rating"]),
+        ),
     ];
     for (name, design) in cases {
         let found = analyse(&files(name), &design).unwrap();
@@ -73,6 +77,20 @@ fn each_program_s_export_holds_the_same_ratings() {
         assert_eq!((found.anova.n_subjects, rays.df_den), (3, 2), "{name}");
         assert_eq!(found.anova.n_averaged_cells, 0, "{name}");
     }
+}
+
+#[test]
+fn files_that_the_programs_wrote_themselves_are_read() {
+    // Each picture twice, half a step above and below the rating, so that the averages are the ratings.
+    let of_psychopy = design("participant", "trials.slider.response", &["trials.thisN!="]);
+    let found = analyse(&files("psychopy-2026.2.5"), &of_psychopy).unwrap();
+    let rays = &found.anova.effects[0];
+    assert!((rays.f.unwrap() - 5041.0 / 91.0).abs() < 1e-11, "{rays:?}");
+    assert_eq!(found.anova.n_averaged_cells, 6);
+    // The survey: only the level 10K was asked for.
+    let of_survey = design("who", "response.Q0", &["task=again"]);
+    let message = analyse(&files("jspsych-8.3.0.csv"), &of_survey).unwrap_err();
+    assert!(message.contains("one level (\"10K\")"), "{message}");
 }
 
 #[test]

@@ -90,6 +90,7 @@ fn every_file_is_written_and_no_other() {
             "means.csv",
             "report.html",
             "report.md",
+            "report.pdf",
             "tables.tex",
             "to-paste.txt"
         ]

@@ -1,12 +1,13 @@
 //! What two models of vision predict that a study will find, before anyone is asked.
 //!
 //! Each model's difference of an image from its reference is stretched onto the study's scale: no difference, or the ten
-//! anchor, at the highest rating, the zero anchor (or else the worst image) at the lowest. A prediction has no observers:
-//! only the shape of the curves is predicted, not how people use a scale.
+//! anchor, at the highest rating, the zero anchor (or else the worst image) at the lowest, and an image that differs more than
+//! the zero anchor at the lowest too. A prediction has no observers: only the shape of the curves is predicted, not how
+//! people use a scale.
 
 use std::fmt::Write as _;
 
-use protocols::{Sha256Digest, StimulusId, Study};
+use protocols::{Scale, Sha256Digest, StimulusId, Study};
 use rayon::prelude::*;
 
 use crate::scielab::Scielab;
@@ -64,14 +65,15 @@ pub fn predict(study: &Study, set: &StimulusSet) -> Result<Predictions, Experime
         None => differences.iter().copied().fold(0.0, f64::max),
     };
     let scale = study.protocol.session.scale;
-    let (lowest, highest) = (f64::from(scale.lowest), f64::from(scale.highest));
     let predictions = images.into_iter().zip(differences).map(|(image, delta_e)| {
         let vision = &by_vision[&image.id];
         Prediction {
             cvvdp_jod: vision.jod,
-            cvvdp_rating: vision.on_scale,
+            cvvdp_rating: vision
+                .on_scale
+                .clamp(f64::from(scale.lowest), f64::from(scale.highest)),
             scielab_delta_e: delta_e,
-            scielab_rating: highest - (highest - lowest) * delta_e / worst.max(1e-9),
+            scielab_rating: rating_of_difference(scale, delta_e, worst),
             stimulus: image.id,
             levels: image.levels,
         }
@@ -81,6 +83,12 @@ pub fn predict(study: &Study, set: &StimulusSet) -> Result<Predictions, Experime
         manifest_sha256: set.manifest_sha256().clone(),
         images: predictions.collect(),
     })
+}
+
+/// The rating that lies between the ends of the scale as `difference` between none and `worst`; a scale has no rating for more.
+fn rating_of_difference(scale: Scale, difference: f64, worst: f64) -> f64 {
+    let (lowest, highest) = (f64::from(scale.lowest), f64::from(scale.highest));
+    (highest - (highest - lowest) * difference / worst.max(1e-9)).clamp(lowest, highest)
 }
 
 impl Predictions {
@@ -136,5 +144,22 @@ fn quoted(field: &str) -> String {
         format!("\"{}\"", field.replace('"', "\"\""))
     } else {
         field.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rating_never_leaves_the_scale() {
+        let scale = Scale {
+            lowest: 2,
+            highest: 10,
+        };
+        // A quarter of the worst difference takes a quarter of the eight steps.
+        let ratings = [0.0, 1.0, 4.0, 4.4].map(|d| rating_of_difference(scale, d, 4.0));
+        assert_eq!(ratings, [10.0, 8.0, 2.0, 2.0]);
+        assert_eq!(rating_of_difference(scale, 0.0, 0.0), 10.0);
     }
 }

@@ -37,9 +37,9 @@ pub enum FollowUpPlan {
     Trends {
         /// The factor.
         factor: String,
-        /// The highest degree.
-        #[serde(default = "three")]
-        degrees: usize,
+        /// The highest degree; without it 3, or as far as the levels go.
+        #[serde(default)]
+        degrees: Option<usize>,
     },
     /// Given weights of the levels of `factor`; they sum to zero, levels not named count 0.
     Contrast {
@@ -53,10 +53,6 @@ pub enum FollowUpPlan {
         #[serde(default)]
         at: Option<String>,
     },
-}
-
-fn three() -> usize {
-    3
 }
 
 impl FollowUpPlan {

@@ -42,6 +42,7 @@ mod stimulus;
 mod stimulus_plan;
 mod study;
 mod subject_id;
+mod table_protocol;
 mod viewing;
 
 pub use acuity::Acuity;
@@ -72,4 +73,5 @@ pub use stimulus::{Stimulus, StimulusId};
 pub use stimulus_plan::{Anchors, Quadrature, RefinementDriver, Sequence, StimulusPlan, TreePlan};
 pub use study::{Rendering, Study};
 pub use subject_id::SubjectId;
+pub use table_protocol::{TablePlan, TableProtocol};
 pub use viewing::Viewing;

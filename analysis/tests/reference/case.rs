@@ -4,7 +4,9 @@ use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use analysis::{AnalysisError, AnovaTable, CellMatrix, Design, anova_of_table, read_observations};
+use analysis::{
+    AnalysisError, AnovaTable, CellMatrix, Decimal, Design, anova_of_table, read_observations,
+};
 use protocols::{Missing, SumsOfSquares};
 use serde_json::Value;
 
@@ -41,6 +43,7 @@ impl Case {
             sums_of_squares: SumsOfSquares::TypeThree,
             missing: Missing::Drop,
             filters: Vec::new(),
+            decimal: Decimal::Point,
         }
     }
 

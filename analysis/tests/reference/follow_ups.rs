@@ -177,7 +177,7 @@ fn trends_agree_with_r() {
             .count();
         let plan = FollowUpPlan::Trends {
             factor: factor.to_owned(),
-            degrees,
+            degrees: Some(degrees),
         };
         let family = FollowUp::new(&plan, &case.cells(), SETTINGS).unwrap();
         if case.id() == "indometh_singular" || !family.warnings.is_empty() {

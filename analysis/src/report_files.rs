@@ -1,0 +1,69 @@
+//! The files of a report, in every format, of one document and one analysis.
+
+use std::path::{Path, PathBuf};
+
+use protocols::{Access, write_atomically};
+
+use crate::document::Document;
+use crate::picture::FigurePicture;
+use crate::{AnalysisError, TableAnalysis};
+
+/// What the files are made from.
+pub(crate) struct ReportFiles<'a> {
+    pub(crate) document: &'a Document,
+    pub(crate) table: &'a TableAnalysis,
+    /// The methods paragraph and the sentences.
+    pub(crate) to_paste: String,
+    pub(crate) means_csv: String,
+    /// The name of the figure, and the figure as SVG for paper.
+    pub(crate) figure: (&'static str, String),
+}
+
+impl ReportFiles<'_> {
+    /// Each file with its name, the page first.
+    ///
+    /// # Errors
+    ///
+    /// A figure that cannot be drawn.
+    pub(crate) fn files(self) -> Result<Vec<(String, Vec<u8>)>, AnalysisError> {
+        let (name, svg) = self.figure;
+        let picture = FigurePicture::new(&svg)?;
+        let text = |name: &str, text: String| (name.to_owned(), text.into_bytes());
+        Ok(vec![
+            text("report.html", self.document.to_html()),
+            text("report.md", self.document.to_markdown()),
+            ("report.pdf".to_owned(), self.document.to_pdf()?),
+            text("tables.tex", self.document.to_latex()),
+            text("to-paste.txt", self.to_paste),
+            text("anova.json", self.table.to_json()),
+            text("anova.csv", self.table.anova.to_csv()),
+            text("follow-ups.csv", self.table.follow_ups_csv()),
+            text("asymptotes.csv", self.table.asymptotes_csv()),
+            text("means.csv", self.means_csv),
+            (format!("{name}.png"), picture.to_png()?),
+            (format!("{name}.pdf"), picture.to_pdf()),
+            text(&format!("{name}-outlined.svg"), picture.to_outlines()),
+            text(&format!("{name}.svg"), svg),
+        ])
+    }
+}
+
+/// Writes every file into a folder, each whole or not at all.
+///
+/// # Errors
+///
+/// The system would not write one.
+pub(crate) fn write_files(
+    folder: &Path,
+    files: Vec<(String, Vec<u8>)>,
+) -> Result<Vec<PathBuf>, AnalysisError> {
+    let mut written = Vec::new();
+    for (name, bytes) in files {
+        let file = folder.join(name);
+        if let Err(source) = write_atomically(&file, &bytes, Access::Owner) {
+            return Err(AnalysisError::Write { file, source });
+        }
+        written.push(file);
+    }
+    Ok(written)
+}
