@@ -23,7 +23,6 @@ mod intake;
 mod intake_files;
 mod latin_square;
 mod note;
-mod opponent_file;
 mod order;
 mod panel;
 mod picture;

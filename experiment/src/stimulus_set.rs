@@ -8,13 +8,12 @@ use std::path::{Path, PathBuf};
 
 use image::{ColorType, ImageFormat};
 use protocols::{
-    InputError, Manifest, ManifestFile, ManifestPicture, ManifestStimulus, PictureManifest,
-    ReadError, Sha256Digest, Stimuli, StimulusId, Study,
+    InputError, Manifest, ManifestFile, ManifestPicture, ManifestStimulus, OpponentPixels,
+    PerChannel, PictureManifest, ReadError, Sha256Digest, Stimuli, StimulusId, Study,
 };
 
 use crate::ExperimentError;
 use crate::display::{Display, ac1c2_of_srgb};
-use crate::opponent_file::read_opponent_file;
 
 /// An image as the screen shows it: 8-bit sRGB, row by row from the top, three bytes a pixel.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -79,7 +78,7 @@ impl StimulusSet {
             let colors = match files.get(id) {
                 Some(file) => {
                     let bytes = file.read_verified(stimuli_dir)?;
-                    read_opponent_file(&bytes, &stimuli_dir.join(&file.name), self.size_px)?
+                    opponent_colors(&bytes, &stimuli_dir.join(&file.name), self.size_px)?
                 }
                 None => (image.rgb.chunks_exact(3))
                     .map(|rgb| ac1c2_of_srgb([rgb[0], rgb[1], rgb[2]]))
@@ -172,6 +171,28 @@ impl ShownFiles {
             }
         }
     }
+}
+
+/// The colours in the bytes of a stimulus of this size, row by row from the top.
+fn opponent_colors(
+    bytes: &[u8],
+    path: &Path,
+    size_px: [u32; 2],
+) -> Result<Vec<PerChannel<f64>>, InputError> {
+    let found = OpponentPixels::from_exr(bytes, path)?;
+    if found.size_px != size_px {
+        let [width, height] = found.size_px;
+        let expected = format!("{} x {}, as its picture has", size_px[0], size_px[1]);
+        let found = format!("{width} x {height} pixels");
+        return Err(InputError::new(path, found, expected).remedy("render the set again"));
+    }
+    let PerChannel { a, c1, c2 } = &found.values;
+    let pixel = |((a, c1), c2): ((&f32, &f32), &f32)| PerChannel {
+        a: f64::from(*a),
+        c1: f64::from(*c1),
+        c2: f64::from(*c2),
+    };
+    Ok(a.iter().zip(c1).zip(c2).map(pixel).collect())
 }
 
 /// The EXR file of each image of a rendered set; own pictures have none.

@@ -4,14 +4,10 @@
 //! Beside the pixels stand the ray counts, the matrix of Eq. 2 and all that is needed to make the image again.
 
 use std::borrow::Cow;
-use std::io::Cursor;
 use std::path::Path;
 
-use exr::prelude::{
-    AnyChannel, AttributeValue, FlatSamples, LayerAttributes, ReadChannels as _, ReadLayers as _,
-    Text,
-};
-use protocols::{Channel, InputError, PerChannel};
+use exr::prelude::{AttributeValue, LayerAttributes, Text};
+use protocols::{Channel, InputError, OpponentPixels, PerChannel};
 
 use crate::channel_image::ChannelImage;
 use crate::error::RendererError;
@@ -67,41 +63,17 @@ pub fn read_opponent_exr(
     bytes: &[u8],
     path: &Path,
 ) -> Result<PerChannel<ChannelImage>, InputError> {
-    let kind = "an EXR file with the 32-bit float channels A, C1 and C2";
-    let wrong = |found: String| InputError::new(path, found, kind).remedy("render the set again");
-    let image = exr::prelude::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .first_valid_layer()
-        .all_attributes()
-        .non_parallel()
-        .from_buffered(Cursor::new(bytes))
-        .map_err(|error| wrong(error.to_string()))?;
-    let layer = image.layer_data;
-    let size_px = [layer.size.x(), layer.size.y()].map(|size| u32::try_from(size).unwrap_or(0));
-    let find = |channel: Channel| {
-        let mut list = layer.channel_data.list.iter();
-        let found = list.find(|stored| stored.name.eq(&channel.to_string()));
-        let Some(AnyChannel {
-            sample_data: FlatSamples::F32(values),
-            ..
-        }) = found
-        else {
-            return Err(wrong(format!("no such channel {channel}")));
-        };
-        if let Some(place) = values.iter().position(|value| !value.is_finite()) {
-            return Err(wrong(format!(
-                "the value {} in channel {channel}",
-                values[place]
-            )));
-        }
-        ChannelImage::new(size_px, values.clone())
-            .ok_or_else(|| wrong(format!("{} values in channel {channel}", values.len())))
+    let OpponentPixels { size_px, values } = OpponentPixels::from_exr(bytes, path)?;
+    let image = |values: Vec<f32>| {
+        let count = values.len();
+        ChannelImage::new(size_px, values).ok_or_else(|| {
+            let found = format!("{} x {} pixels, {count} values", size_px[0], size_px[1]);
+            InputError::new(path, found, "one value for each pixel").remedy("render the set again")
+        })
     };
     Ok(PerChannel {
-        a: find(Channel::A)?,
-        c1: find(Channel::C1)?,
-        c2: find(Channel::C2)?,
+        a: image(values.a)?,
+        c1: image(values.c1)?,
+        c2: image(values.c2)?,
     })
 }
