@@ -12,7 +12,6 @@ use rand::Rng as _;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng as _;
 
-use crate::chacha;
 use crate::sampler::{GridPoint, ScreenPoint};
 
 /// A rectangle that halving the screen leads to.
@@ -33,7 +32,7 @@ pub enum Axis {
 }
 
 /// The part of the width and of the height of a new cell in which its sample may lie.
-const JITTER: f64 = 0.7;
+pub(crate) const JITTER: f64 = 0.7;
 
 /// An axis-aligned rectangle of the screen, in screen coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,9 +68,23 @@ impl Cell {
         }
     }
 
+    /// The first cell of so many halvings along x and along y, no more than 31 each.
+    pub(crate) const fn first_of([along_x, along_y]: [u32; 2]) -> Self {
+        Self {
+            x: 1 << along_x,
+            y: 1 << along_y,
+        }
+    }
+
     /// How many halvings lead here: 0 for the whole screen.
     pub const fn depth(self) -> u32 {
         self.x.ilog2() + self.y.ilog2()
+    }
+
+    /// How many halvings lead here along x and along y.
+    #[cfg(test)]
+    pub(crate) const fn halvings(self) -> [u32; 2] {
+        [self.x.ilog2(), self.y.ilog2()]
     }
 
     /// The fraction of the screen that the cell covers, 2^−depth.
@@ -164,24 +177,6 @@ impl Cell {
         usize::from(is_second)
     }
 
-    /// Where the samples of four new cells are taken, each a function of the seed and its cell alone.
-    ///
-    /// Uniform within [`JITTER`] of the width and of the height around the middle: an edge that cuts off a
-    /// part `p` of a cell is missed by `p (1 - p)` on average by a uniform point and by `min(p, 1 - p)²`, half
-    /// of that, by the middle, which however errs in the same way in every cell along the edge.
-    pub(crate) fn sample_points(cells: [Self; 4], seed: u64) -> [ScreenPoint; 4] {
-        let numbers = chacha::first_numbers(seed, cells.map(Self::stream));
-        std::array::from_fn(|place| {
-            let rectangle = cells[place].rectangle();
-            let ScreenPoint { x, y } = rectangle.point(numbers[place]);
-            let middle = rectangle.middle();
-            ScreenPoint {
-                x: middle.x + JITTER * (x - middle.x),
-                y: middle.y + JITTER * (y - middle.y),
-            }
-        })
-    }
-
     /// The uniform random point of this cell, a function of the seed and the cell alone.
     ///
     /// Two 53-bit fractions from the `ChaCha8` stream whose key is the seed and whose number is the cell.
@@ -215,7 +210,7 @@ impl Rectangle {
         }
     }
 
-    fn middle(&self) -> ScreenPoint {
+    pub(crate) fn middle(&self) -> ScreenPoint {
         ScreenPoint {
             x: self.left + 0.5 * self.width,
             y: self.top + 0.5 * self.height,
@@ -223,8 +218,10 @@ impl Rectangle {
     }
 }
 
-pub(crate) fn half_to_the(exponent: u32) -> f64 {
-    f64::from_bits((1023 - u64::from(exponent)) << 52)
+/// Half to the power of a number, which is no more than 1022.
+#[inline]
+pub(crate) const fn half_to_the(exponent: u32) -> f64 {
+    f64::from_bits((1023 - exponent as u64) << 52)
 }
 
 /// The axis of the longer side of a rectangle, unless it is a square within a tenth.
@@ -332,24 +329,11 @@ mod tests {
     fn a_random_point_lies_in_its_cell_and_in_the_half_that_is_named() {
         for number in 0..2000 {
             let (cell, _) = descend([640, 480], (number % 48) as u32, choices(number));
-            for point in [cell.random_point(7), Cell::sample_points([cell; 4], 7)[0]] {
-                for axis in [Axis::X, Axis::Y] {
-                    let half = cell.halves(axis)[cell.half_of(point, axis)].rectangle();
-                    assert!((half.left..half.left + half.width).contains(&point.x));
-                    assert!((half.top..half.top + half.height).contains(&point.y));
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn a_sample_lies_where_its_random_point_does_but_nearer_to_the_middle() {
-        for number in 0..500 {
-            let cells = [0, 1, 2, 3].map(|lane| descend([8, 8], 23, choices(4 * number + lane)).0);
-            for (cell, sample) in cells.into_iter().zip(Cell::sample_points(cells, 1992)) {
-                let (point, middle) = (cell.random_point(1992), cell.rectangle().middle());
-                assert_eq!(sample.x, middle.x + 0.7 * (point.x - middle.x));
-                assert_eq!(sample.y, middle.y + 0.7 * (point.y - middle.y));
+            let point = cell.random_point(7);
+            for axis in [Axis::X, Axis::Y] {
+                let half = cell.halves(axis)[cell.half_of(point, axis)].rectangle();
+                assert!((half.left..half.left + half.width).contains(&point.x));
+                assert!((half.top..half.top + half.height).contains(&point.y));
             }
         }
     }

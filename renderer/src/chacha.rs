@@ -1,11 +1,15 @@
-//! The first numbers of four streams of `ChaCha8` at once.
+//! The first numbers of sixteen streams of `ChaCha8` at once.
 //!
 //! The same bits as those of `rand_chacha`, which makes four blocks of one stream at a time; a cell of the
 //! screen needs a quarter of one.
 //!
 //! Source: Bernstein (2008), "`ChaCha`, a variant of Salsa20", with a counter and a nonce of 64 bits.
+#![expect(
+    clippy::inline_always,
+    reason = "code for a processor's own instructions is compiled for them only where it is inlined"
+)]
 
-use wide::u32x4;
+use crate::halving::{LANES, Lanes};
 
 /// "expand 32-byte k".
 const CONSTANTS: [u32; 4] = [0x6170_7865, 0x3320_646e, 0x7962_2d32, 0x6b20_6574];
@@ -13,48 +17,53 @@ const CONSTANTS: [u32; 4] = [0x6170_7865, 0x3320_646e, 0x7962_2d32, 0x6b20_6574]
 /// Two rounds each.
 const DOUBLE_ROUNDS: usize = 4;
 
-/// The first two 64-bit numbers of each of four streams. The key is a seed, its other 24 bytes are zero.
-pub(crate) fn first_numbers(seed: u64, streams: [u64; 4]) -> [[u64; 2]; 4] {
-    let mut start = [u32x4::ZERO; 16];
+/// The first four words of each of sixteen streams. The key is a seed, its other 24 bytes are zero.
+///
+/// A stream is given by the lower and the upper half of its number.
+#[inline(always)]
+pub(crate) fn first_words(seed: u64, [low, high]: [Lanes; 2]) -> [Lanes; 4] {
+    let mut start = [[0; LANES]; 16];
     for (word, constant) in start.iter_mut().zip(CONSTANTS) {
-        *word = u32x4::splat(constant);
+        *word = [constant; LANES];
     }
-    let [low, high] = words(seed);
-    (start[4], start[5]) = (u32x4::splat(low), u32x4::splat(high));
-    let streams = streams.map(words);
-    start[14] = u32x4::new(streams.map(|[low, _]| low));
-    start[15] = u32x4::new(streams.map(|[_, high]| high));
+    let [seed_low, seed_high] = words(seed);
+    (start[4], start[5]) = ([seed_low; LANES], [seed_high; LANES]);
+    (start[14], start[15]) = (low, high);
     let mut state = start;
     for _ in 0..DOUBLE_ROUNDS {
-        for column in 0..4 {
-            quarter_round(&mut state, [0, 4, 8, 12].map(|row| row + column));
-        }
-        for diagonal in 0..4 {
-            let places = [0, 1, 2, 3].map(|row| 4 * row + (diagonal + row) % 4);
-            quarter_round(&mut state, places);
-        }
+        quarter_round(&mut state, [0, 4, 8, 12]);
+        quarter_round(&mut state, [1, 5, 9, 13]);
+        quarter_round(&mut state, [2, 6, 10, 14]);
+        quarter_round(&mut state, [3, 7, 11, 15]);
+        quarter_round(&mut state, [0, 5, 10, 15]);
+        quarter_round(&mut state, [1, 6, 11, 12]);
+        quarter_round(&mut state, [2, 7, 8, 13]);
+        quarter_round(&mut state, [3, 4, 9, 14]);
     }
-    let block: [[u32; 4]; 4] = std::array::from_fn(|word| (state[word] + start[word]).to_array());
-    std::array::from_fn(|stream| {
-        [[0, 1], [2, 3]].map(|[low, high]| {
-            u64::from(block[low][stream]) | (u64::from(block[high][stream]) << 32)
-        })
-    })
+    [0, 1, 2, 3].map(|word| sum(state[word], start[word]))
 }
 
-#[inline]
-fn quarter_round(state: &mut [u32x4; 16], [a, b, c, d]: [usize; 4]) {
-    for [left, right] in [[16, 12], [8, 7]] {
-        state[a] += state[b];
-        state[d] = rotated(state[d] ^ state[a], left);
-        state[c] += state[d];
-        state[b] = rotated(state[b] ^ state[c], right);
-    }
+#[inline(always)]
+fn quarter_round(state: &mut [Lanes; 16], [a, b, c, d]: [usize; 4]) {
+    state[a] = sum(state[a], state[b]);
+    state[d] = turned::<16>(state[d], state[a]);
+    state[c] = sum(state[c], state[d]);
+    state[b] = turned::<12>(state[b], state[c]);
+    state[a] = sum(state[a], state[b]);
+    state[d] = turned::<8>(state[d], state[a]);
+    state[c] = sum(state[c], state[d]);
+    state[b] = turned::<7>(state[b], state[c]);
 }
 
-#[inline]
-fn rotated(word: u32x4, left: u32) -> u32x4 {
-    (word << left) | (word >> (32 - left))
+#[inline(always)]
+fn sum(one: Lanes, other: Lanes) -> Lanes {
+    std::array::from_fn(|lane| one[lane].wrapping_add(other[lane]))
+}
+
+/// The bits in which two words differ, turned to the left.
+#[inline(always)]
+fn turned<const BY: u32>(one: Lanes, other: Lanes) -> Lanes {
+    std::array::from_fn(|lane| (one[lane] ^ other[lane]).rotate_left(BY))
 }
 
 /// The lower half and the upper half.
@@ -73,17 +82,20 @@ mod tests {
     #[test]
     fn the_numbers_are_those_of_rand_chacha() {
         for seed in [0, 1, 1992, u64::MAX] {
-            for first in 0..500_u64 {
-                let streams = [0, 1, 2, 3_u64]
-                    .map(|lane| (4 * first + lane).wrapping_mul(0x9e37_79b9_7f4a_7c15));
-                let expected = streams.map(|stream| {
+            for first in 0..200_u64 {
+                let streams: [u64; LANES] = std::array::from_fn(|lane| {
+                    (16 * first + lane as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+                });
+                let halves = [0, 1].map(|half| streams.map(|stream| words(stream)[half]));
+                let found = first_words(seed, halves);
+                for (lane, stream) in streams.into_iter().enumerate() {
                     let mut key = [0; 32];
                     key[..8].copy_from_slice(&seed.to_le_bytes());
                     let mut random = ChaCha8Rng::from_seed(key);
                     random.set_stream(stream);
-                    [random.next_u64(), random.next_u64()]
-                });
-                assert_eq!(first_numbers(seed, streams), expected);
+                    let expected = [0; 4].map(|_| random.next_u32());
+                    assert_eq!(found.map(|word| word[lane]), expected);
+                }
             }
         }
     }

@@ -28,9 +28,31 @@ impl ChannelSamples {
         }
     }
 
-    /// Adds the values of samples from `first` on, all later than those before; `None` where it was not shaded.
-    pub(crate) fn extend(&mut self, first: u32, values: impl Iterator<Item = Option<f32>>) {
-        for (sample, value) in (first..).zip(values) {
+    /// Adds the values of the samples from `first` on, each with its number, in any order; `None` where it was
+    /// not shaded. All are later than those before.
+    pub(crate) fn extend(
+        &mut self,
+        first: u32,
+        values: impl ExactSizeIterator<Item = (u32, Option<f32>)> + Clone,
+    ) {
+        let gapless = first as usize;
+        if self.shaded.is_empty() && self.values.len() == gapless {
+            self.values.resize(gapless + values.len(), f32::NAN);
+            let mut is_gapless = true;
+            for (sample, value) in values.clone() {
+                is_gapless &= value.is_some();
+                self.values[sample as usize] = value.unwrap_or(f32::NAN);
+            }
+            if is_gapless {
+                return;
+            }
+            self.values.truncate(gapless);
+        }
+        let mut in_order = vec![None; values.len()];
+        for (sample, value) in values {
+            in_order[(sample - first) as usize] = value;
+        }
+        for (sample, value) in (first..).zip(in_order) {
             if let Some(value) = value {
                 self.push(sample, value);
             }
@@ -98,6 +120,24 @@ mod tests {
             assert_eq!(samples.get(sample), expected, "sample {sample}");
         }
         assert_eq!(samples.len(), shaded.len());
+    }
+
+    /// The second piece has a gap, the third comes after one.
+    #[test]
+    fn pieces_are_added_in_any_order_of_their_samples() {
+        let mut samples = ChannelSamples::default();
+        let value = |sample: u32| (![4, 7].contains(&sample)).then_some(sample as f32);
+        for piece in [[2_u32, 0, 1], [5, 3, 4], [6, 8, 7]] {
+            let first = piece.into_iter().min().unwrap();
+            samples.extend(
+                first,
+                piece.map(|sample| (sample, value(sample))).into_iter(),
+            );
+        }
+        assert_eq!(samples.len(), 7);
+        for sample in 0..9 {
+            assert_eq!(samples.get(sample), value(sample), "sample {sample}");
+        }
     }
 
     #[test]

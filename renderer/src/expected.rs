@@ -33,14 +33,18 @@ impl Expected {
 /// `share` is the part `f` of the way between the samples that lies in the first.
 #[inline]
 pub(crate) fn expected_variances(variance: f32, share: f32) -> [f32; 2] {
-    [share, 1.0 - share].map(|share| variance * share * share)
+    let rest = 1.0 - share;
+    [variance * share * share, variance * rest * rest]
 }
 
 /// The part of the way from one sample to its neighbour's that lies on its own side of the border, from the
 /// places of all three along the axis.
 #[inline]
 pub(crate) fn share(border: u32, [own, other]: [u32; 2]) -> f32 {
-    let way = |to: u32| (i64::from(to) - i64::from(own)) as f32;
+    let way = |to: u32| {
+        let length = (to.max(own) - to.min(own)) as f32;
+        if to >= own { length } else { -length }
+    };
     let share = way(border) / way(other);
     // Where several leaves share a square of the map it may name one that does not lie beyond the border.
     if (0.0..=1.0).contains(&share) {
@@ -48,6 +52,12 @@ pub(crate) fn share(border: u32, [own, other]: [u32; 2]) -> f32 {
     } else {
         0.5
     }
+}
+
+/// The variance of two samples, from their difference.
+#[inline]
+pub(crate) fn halved_square(difference: f32) -> f32 {
+    0.5 * difference * difference
 }
 
 #[cfg(test)]

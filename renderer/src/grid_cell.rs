@@ -3,7 +3,7 @@
 //! A cell of `h` halvings along an axis is 2^(32 - h) steps long there and begins at a multiple of that, so
 //! any point inside it and its halvings are the cell.
 
-use crate::cell::{Axis, Cell};
+use crate::cell::Cell;
 use crate::sampler::GridPoint;
 
 /// A rectangle of the screen that halving leads to, in steps of the grid.
@@ -25,6 +25,11 @@ impl GridCell {
         }
     }
 
+    /// How many halvings lead here.
+    pub(crate) fn depth(self) -> u32 {
+        self.halvings.map(u32::from).iter().sum()
+    }
+
     /// The first steps beyond it along x and along y; 0 where it ends with the screen.
     pub(crate) fn ends(self) -> [u32; 2] {
         [0, 1].map(|along| {
@@ -37,27 +42,6 @@ impl GridCell {
     pub(crate) fn sides(self) -> [u32; 4] {
         let ([left, top], [right, bottom]) = (self.from, self.ends());
         [left, right, top, bottom]
-    }
-
-    /// The first step of its second half along an axis.
-    pub(crate) const fn middle(self, axis: Axis) -> u32 {
-        let along = axis as usize;
-        self.from[along] | (1 << 31 >> self.halvings[along])
-    }
-
-    /// Which of its halves along an axis holds a point that lies in it: 0 or 1.
-    pub(crate) fn half_of(self, GridPoint(point): GridPoint, axis: Axis) -> usize {
-        usize::from(point[axis as usize] >= self.middle(axis))
-    }
-
-    /// One of its halves along an axis.
-    pub(crate) const fn half(mut self, half: usize, axis: Axis) -> Self {
-        let along = axis as usize;
-        if half == 1 {
-            self.from[along] = self.middle(axis);
-        }
-        self.halvings[along] += 1;
-        self
     }
 
     /// The same as halvings of the screen.
@@ -78,7 +62,7 @@ const fn low_bits(number: u64) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cell::Rectangle;
+    use crate::cell::{Axis, Rectangle};
 
     const STEPS: f64 = 4_294_967_296.0;
 
@@ -88,17 +72,17 @@ mod tests {
         for number in 0..2000_u64 {
             let mut choices = number.wrapping_mul(0x9e37_79b9_7f4a_7c15);
             let point = GridPoint([low_bits(choices & 0xffff_ffff), low_bits(choices >> 32)]);
-            let (mut plain, mut cell) = (Cell::ROOT, GridCell::holding(point, [0, 0]));
+            let (mut plain, mut halvings) = (Cell::ROOT, [0_u8; 2]);
             for _ in 0..number % 49 {
-                let is_x = cell.halvings[1] == 31 || (cell.halvings[0] < 31 && choices & 1 == 0);
+                let is_x = halvings[1] == 31 || (halvings[0] < 31 && choices & 1 == 0);
                 let axis = if is_x { Axis::X } else { Axis::Y };
                 choices = choices.rotate_right(7);
                 let half = plain.half_of(point.into(), axis);
-                assert_eq!(cell.half_of(point, axis), half);
                 plain = plain.halves(axis)[half];
-                cell = cell.half(half, axis);
+                halvings[axis as usize] += 1;
             }
-            assert_eq!(GridCell::holding(point, cell.halvings), cell);
+            let cell = GridCell::holding(point, halvings);
+            assert_eq!(cell.depth(), plain.depth());
             assert_eq!(cell.cell(), plain);
             let Rectangle {
                 left,

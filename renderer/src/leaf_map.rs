@@ -10,8 +10,11 @@
 //! Not here: what is made of the neighbours that are found; see [`leaves`](crate::leaves).
 //!
 //! Source: Morton (1966), "A computer oriented geodetic data base", for the order.
+#![expect(
+    clippy::inline_always,
+    reason = "code for a processor's own instructions is compiled for them only where it is inlined"
+)]
 
-use crate::cell::Axis;
 use crate::grid_cell::GridCell;
 
 /// Squares for each leaf before the grid is made finer.
@@ -46,104 +49,185 @@ impl LeafMap {
         map
     }
 
-    /// Makes the grid as fine as this many leaves ask for; whether it changed, and is to be filled again.
-    pub(crate) fn resize(&mut self, leaves: usize) -> bool {
+    /// Makes the grid as fine as this many leaves ask for. If it changes, gives the grid whose squares were kept:
+    /// leaves of which it does not [show](Grid::shows) the whole are to be entered again.
+    pub(crate) fn resize(&mut self, leaves: usize) -> Option<Grid> {
         let coarsened = |by: u32| self.finest.map(|halvings| halvings.saturating_sub(by));
         let is_enough = |&by: &u32| {
             let [along_x, along_y] = coarsened(by);
             1 << (along_x + along_y) >= SQUARES_PER_LEAF * leaves
         };
         let halvings = coarsened((0..=FINEST).rev().find(is_enough).unwrap_or(0));
-        let is_changed = halvings != self.halvings;
-        if is_changed {
-            self.halvings = halvings;
-            // The order may leave places unused on a long picture; memory that is never touched is never taken.
-            let last = halvings.map(|halvings| (1 << halvings) - 1);
-            self.leaves = vec![0; place(last) + 1];
+        if halvings == self.halvings {
+            return None;
         }
-        is_changed
+        let Self {
+            halvings: coarse,
+            leaves: old,
+            ..
+        } = std::mem::replace(
+            self,
+            Self {
+                halvings,
+                finest: self.finest,
+                // The order may leave places unused on a long picture; memory that is never touched is never taken.
+                leaves: vec![0; place(halvings.map(|halvings| (1 << halvings) - 1)) + 1],
+            },
+        );
+        if halvings != coarse.map(|halvings| halvings + 1) {
+            return Some(Grid { halvings: [0; 2] });
+        }
+        // The quarters of a square stand together.
+        for (quarters, leaf) in self.leaves.chunks_exact_mut(4).zip(old) {
+            quarters.fill(leaf);
+        }
+        Some(Grid { halvings: coarse })
     }
 
     /// Enters a leaf.
+    #[inline]
     pub(crate) fn enter(&mut self, leaf: u32, cell: GridCell) {
-        let mut blocks = [0; 2];
-        for axis in [0, 1] {
-            let (cells, squares) = (u32::from(cell.halvings[axis]), self.halvings[axis]);
-            // A part of a square has it if it begins in its middle.
-            if cells > squares && (cell.from[axis] << squares) != 1 << 31 {
-                return;
-            }
-            blocks[axis] = squares.saturating_sub(cells);
-        }
-        // The cell in blocks of as many columns as rows, of which each is one run.
-        let size = blocks[0].min(blocks[1]);
-        let first = self.square(cell.from).map(|number| number >> size);
-        let [columns, rows] = blocks.map(|block| 1 << (block - size));
-        if [size, columns, rows] == [0, 1, 1] {
-            self.leaves[place(first)] = leaf;
+        let Grid { halvings } = self.grid();
+        let [along_x, along_y] = [u32::from(cell.halvings[0]), u32::from(cell.halvings[1])];
+        // A part of a square has it if it begins in its middle.
+        let is_beside_x = along_x > halvings[0] && cell.from[0] << halvings[0] != 1 << 31;
+        let is_beside_y = along_y > halvings[1] && cell.from[1] << halvings[1] != 1 << 31;
+        if is_beside_x || is_beside_y {
             return;
         }
-        for row in 0..rows {
-            for column in 0..columns {
-                let start = place([first[0] + column, first[1] + row]) << (2 * size);
+        let [columns, rows] = [
+            halvings[0].saturating_sub(along_x),
+            halvings[1].saturating_sub(along_y),
+        ];
+        let first = self.grid().square(cell.from) as usize;
+        // As many columns as rows are one run, and so are twice as many.
+        if columns == rows || columns == rows + 1 {
+            self.leaves[first..first + (1 << (columns + rows))].fill(leaf);
+        } else {
+            self.enter_blocks(leaf, first, [columns, rows]);
+        }
+    }
+
+    /// Enters a leaf of more than one run: 2 to the power of these numbers of columns and of rows.
+    fn enter_blocks(&mut self, leaf: u32, first: usize, [columns, rows]: [u32; 2]) {
+        let size = columns.min(rows);
+        for row in 0..1 << (rows - size) {
+            for column in 0..1 << (columns - size) {
+                let start = first + (place([column, row]) << (2 * size));
                 self.leaves[start..start + (1 << (2 * size))].fill(leaf);
             }
         }
     }
 
-    /// Whether a leaf at this place has a square of its own.
-    pub(crate) fn shows(&self, cell: GridCell) -> bool {
-        let [along_x, along_y] = cell.halvings.map(u32::from);
+    /// The leaves beyond the middles of the left, right, upper and lower side of a leaf, as far as the map knows;
+    /// the leaf itself where the screen ends.
+    pub(crate) fn around(&self, leaf: u32, cell: GridCell) -> [u32; 4] {
+        let (borders, squares) = self.grid().around(cell.from, cell.halvings.map(u32::from));
+        let (left, top) = (borders[0] == 0, borders[2] == 0);
+        let ends = [left, borders[1] == 0, top, borders[3] == 0];
+        std::array::from_fn(|side| {
+            if ends[side] {
+                leaf
+            } else {
+                self.at(squares[side])
+            }
+        })
+    }
+
+    /// The leaf that has a square.
+    #[inline]
+    pub(crate) fn at(&self, square: u32) -> u32 {
+        self.leaves[square as usize]
+    }
+
+    /// The squares.
+    pub(crate) const fn grid(&self) -> Grid {
+        Grid {
+            halvings: self.halvings,
+        }
+    }
+}
+
+/// The squares of a map.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Grid {
+    halvings: [u32; 2],
+}
+
+impl Grid {
+    /// Where the left, right, upper and lower side of a cell are, 0 where the screen ends there, and where the
+    /// squares beyond their middles stand in the map.
+    ///
+    /// The cell is that of so many halvings, no more than 31 each, which holds a point.
+    #[inline(always)]
+    pub(crate) fn around(self, point: [u32; 2], halvings: [u32; 2]) -> ([u32; 4], [u32; 4]) {
+        let x = self.along(0, point[0], halvings[0]);
+        let y = self.along(1, point[1], halvings[1]);
+        let squares = [
+            x.before | y.middle,
+            x.after | y.middle,
+            x.middle | y.before,
+            x.middle | y.after,
+        ];
+        ([x.from, x.end, y.from, y.end], squares)
+    }
+
+    #[inline(always)]
+    fn along(self, axis: usize, point: u32, halvings: u32) -> Along {
+        let half = (1_u32 << 31) >> halvings;
+        let from = point & !(half << 1).wrapping_sub(1);
+        let end = from.wrapping_add(half << 1);
+        Along {
+            from,
+            end,
+            before: self.part(axis, from.wrapping_sub(1)),
+            middle: self.part(axis, from | half),
+            after: self.part(axis, end),
+        }
+    }
+
+    /// Whether a cell of so many halvings has a square of its own.
+    pub(crate) fn shows(self, halvings: [u8; 2]) -> bool {
+        let [along_x, along_y] = halvings.map(u32::from);
         along_x <= self.halvings[0] && along_y <= self.halvings[1]
     }
 
-    /// The leaves beyond the middles of the left, right, upper and lower side of a leaf, as far as the map knows;
-    /// the leaf itself where the screen ends.
-    #[inline]
-    pub(crate) fn around(&self, leaf: u32, cell: GridCell) -> [u32; 4] {
-        let ([left, top], [right, bottom]) = (cell.from, cell.ends());
-        let middle = [Axis::X, Axis::Y].map(|axis| cell.middle(axis));
-        let before = [left.wrapping_sub(1), top.wrapping_sub(1)];
-        let [before, middle, after] =
-            [before, middle, [right, bottom]].map(|point| dilated(self.square(point)));
-        let found = |side: u32, [x, y]: [u32; 2]| {
-            let found = self.leaves[(x | (y << 1)) as usize];
-            if side == 0 { leaf } else { found }
-        };
-        [
-            found(left, [before[0], middle[1]]),
-            found(right, [after[0], middle[1]]),
-            found(top, [middle[0], before[1]]),
-            found(bottom, [middle[0], after[1]]),
-        ]
+    /// Where the square that holds a point stands in the map.
+    fn square(self, [x, y]: [u32; 2]) -> u32 {
+        self.part(0, x) | self.part(1, y)
     }
 
-    /// The column and the row of the square that holds a point.
-    fn square(&self, point: [u32; 2]) -> [u32; 2] {
-        let number = |axis: usize| {
-            let [halvings, step] = [self.halvings[axis], point[axis]];
-            // Two shifts, since one by 32 has no meaning.
-            step >> (31 - halvings) >> 1
-        };
-        [number(0), number(1)]
+    /// What a step along an axis adds to the place of a square.
+    #[inline(always)]
+    const fn part(self, axis: usize, step: u32) -> u32 {
+        // Two shifts, since one by 32 has no meaning.
+        spread(step >> 1 >> (31 - self.halvings[axis])) << axis
     }
+}
+
+/// A cell along one axis: its sides, and what adds to the places of squares before, in and after its middle.
+#[derive(Clone, Copy, Debug)]
+struct Along {
+    from: u32,
+    end: u32,
+    before: u32,
+    middle: u32,
+    after: u32,
 }
 
 /// Where the square of a column and a row stands in Morton's order.
-fn place(square: [u32; 2]) -> usize {
-    let [x, y] = dilated(square);
-    (x | (y << 1)) as usize
+const fn place([x, y]: [u32; 2]) -> usize {
+    (spread(x) | (spread(y) << 1)) as usize
 }
 
-/// Two numbers of 16 bits with a 0 above each bit.
-#[expect(clippy::cast_possible_truncation, reason = "the two halves on purpose")]
-const fn dilated([x, y]: [u32; 2]) -> [u32; 2] {
-    let mut bits = x as u64 | ((y as u64) << 32);
-    bits = (bits | (bits << 8)) & 0x00ff_00ff_00ff_00ff;
-    bits = (bits | (bits << 4)) & 0x0f0f_0f0f_0f0f_0f0f;
-    bits = (bits | (bits << 2)) & 0x3333_3333_3333_3333;
-    bits = (bits | (bits << 1)) & 0x5555_5555_5555_5555;
-    [bits as u32, (bits >> 32) as u32]
+/// A number of 16 bits with a 0 above each bit.
+#[inline(always)]
+const fn spread(number: u32) -> u32 {
+    let mut bits = number;
+    bits = (bits | (bits << 8)) & 0x00ff_00ff;
+    bits = (bits | (bits << 4)) & 0x0f0f_0f0f;
+    bits = (bits | (bits << 2)) & 0x3333_3333;
+    (bits | (bits << 1)) & 0x5555_5555
 }
 
 #[cfg(test)]
@@ -175,15 +259,23 @@ mod tests {
     }
 
     #[test]
-    fn a_finer_grid_is_empty_until_it_is_filled_and_has_an_end() {
+    fn a_finer_grid_shows_the_same_and_has_an_end() {
+        let mut map = three_leaves();
+        let before = map.clone();
+        assert!(map.resize(1).is_none());
+        let kept = map.resize(4).unwrap();
+        assert_eq!((before.halvings, map.halvings), ([1, 1], [2, 2]));
+        assert_eq!(kept.halvings, before.halvings);
+        for (place, &leaf) in map.leaves.iter().enumerate() {
+            assert_eq!(leaf, before.leaves[place / 4]);
+        }
+        // A picture that is not a square.
         let mut map = LeafMap::new([16, 4]);
         assert_eq!(map.halvings, [2, 0]);
-        assert!(!map.resize(1));
         map.enter(5, cell([0.0, 0.0], [0, 0]));
-        assert!(map.resize(3) && map.leaves.iter().all(|&leaf| leaf == 0));
-        assert_eq!(map.halvings, [3, 1]);
+        assert_eq!(map.resize(3).unwrap().halvings, [2, 0]);
         let mut long = LeafMap::new([16_384, 1]);
-        long.resize(1_000_000);
+        assert_eq!(long.resize(1_000_000).unwrap().halvings, [0, 0]);
         assert_eq!(long.halvings, [FINEST, 0]);
     }
 
@@ -192,7 +284,7 @@ mod tests {
     fn of_leaves_that_share_a_square_the_map_knows_the_one_over_its_middle() {
         let mut map = LeafMap::new([1, 1]);
         assert_eq!(map.halvings, [1, 1]);
-        assert!(map.shows(cell([0.0, 0.0], [1, 1])) && !map.shows(cell([0.0, 0.0], [2, 1])));
+        assert!(map.grid().shows([1, 1]) && !map.grid().shows([2, 1]));
         map.enter(1, cell([0.0, 0.0], [2, 1]));
         map.enter(2, cell([0.25, 0.0], [2, 1]));
         assert_eq!(map.around(1, cell([0.0, 0.0], [2, 1]))[1], 2);

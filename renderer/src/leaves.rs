@@ -17,29 +17,35 @@
 //! within a class the older leaf comes first. A round depends on the leaves alone, and within it the order is
 //! fixed, so that a tree that ends within a round is the beginning of the one that goes on.
 
+#![expect(
+    clippy::inline_always,
+    reason = "code for a processor's own instructions is compiled for them only where it is inlined"
+)]
+
 use arrayvec::ArrayVec;
 use protocols::{Channel, PerChannel, RefinementDriver};
+use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
 
 use crate::cell::{Axis, Cell};
 use crate::confidence::Regions;
-use crate::expected::{Expected, expected_variances, share};
+use crate::expected::{Expected, expected_variances, halved_square, share};
 use crate::grid_cell::GridCell;
+use crate::halving::{Halving, LANES, Wholes};
 use crate::leaf_map::LeafMap;
+use crate::meetings::{AT_ONCE, Found, Meetings, SIDES};
 use crate::priority::{CLASSES, DUE, NEVER, PriorityRule};
 use crate::refine::TracePlan;
 use crate::round::round;
 use crate::sampler::GridPoint;
 use crate::screen_tree::{NewLeaf, NewSample, Split};
+use crate::spatial_order::spatial_order;
 
 /// One leaf in this many is split in a round.
 const SHARE: usize = 16;
 
-/// This many halves look around at once.
-const AT_ONCE: usize = 64;
-
 /// So many leaves at most are held halved and looked round before what their halves found is entered.
-const BATCH: usize = 16_384;
+const BATCH: usize = 2048;
 
 /// How much of the variance that is expected in a leaf is expected in its halves, where the map is too coarse to
 /// show them.
@@ -55,13 +61,12 @@ struct Known {
     expected: Expected,
 }
 
-/// What else is kept of a leaf.
-#[derive(Clone, Copy, Debug)]
-struct Place {
-    /// Of its priority.
-    class: u16,
-    /// Along x and along y; with the point they are the cell.
-    halvings: [u8; 2],
+impl Known {
+    const NOTHING: Self = Self {
+        point: GridPoint([0; 2]),
+        shown: f32::NAN,
+        expected: Expected::NOTHING,
+    };
 }
 
 /// A leaf that was split in this round: it kept its sample, and half of its cell.
@@ -74,41 +79,45 @@ struct Halved {
     expected: Expected,
 }
 
-/// A leaf that looks around.
-#[derive(Clone, Copy, Debug)]
-struct Half {
-    own: u32,
-    cell: GridCell,
-    /// The leaves beyond its sides; itself where there is none.
-    around: [u32; 4],
+/// Halves that look around, in a place for all that they meet.
+struct Look<'a>(&'a Leaves, &'a [Halved], &'a mut Meetings, &'a mut Found);
+
+impl NullaryFnOnce for Look<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self(leaves, halved, meetings, found) = self;
+        leaves.gather_halves(halved, meetings);
+        meetings.find_squares(leaves.map.grid());
+        let count = 2 * halved.len();
+        leaves.gather_others(count, meetings);
+        meetings.compare();
+        leaves.compare_colours(count, meetings);
+        meetings.meet();
+        meetings.report(count, found);
+    }
 }
-
-/// The axes on which the neighbours lie.
-const SIDES: [Axis; 4] = [Axis::X, Axis::X, Axis::Y, Axis::Y];
-
-/// What a leaf and its neighbours lead to expect in each other.
-#[derive(Clone, Copy, Debug)]
-struct Meetings {
-    here: Expected,
-    there: [Expected; 4],
-}
-
-/// Some halves with what they found.
-type Looks = ArrayVec<(Half, Meetings), AT_ONCE>;
 
 /// The leaves of a tree.
 #[derive(Debug)]
 pub(crate) struct Leaves {
     rule: PriorityRule,
-    size_px: [u32; 2],
+    halving: Halving,
     known: Vec<Known>,
-    places: Vec<Place>,
+    /// The class of the priority of each leaf.
+    classes: Vec<u16>,
+    /// Along x and along y; with the points they are the cells.
+    halvings: Vec<[u8; 2]>,
     nodes: Vec<u32>,
     /// How many leaves there are of each class.
     counts: Vec<usize>,
     map: LeafMap,
     /// The leaves that were split since all looked around.
     halved: Vec<Halved>,
+    /// Room for what they find.
+    found: Vec<Found>,
+    arch: Arch,
     colours: Option<Colours>,
     doubts: Option<Doubts>,
 }
@@ -136,13 +145,16 @@ impl Leaves {
         let is_asked = plan.until.is_some_and(|until| until.channel != Channel::A);
         let mut leaves = Self {
             rule: plan.priority_rule(),
-            size_px: plan.size_px,
+            halving: Halving::new(plan.size_px, plan.seed),
             known: Vec::with_capacity(plan.rays()),
-            places: Vec::with_capacity(plan.rays()),
+            classes: Vec::with_capacity(plan.rays()),
+            halvings: Vec::with_capacity(plan.rays()),
             nodes: Vec::with_capacity(plan.rays()),
             counts: vec![0; CLASSES],
             map: LeafMap::new(plan.size_px),
             halved: Vec::new(),
+            found: Vec::new(),
+            arch: Arch::new(),
             colours: (are_drivers || is_asked).then(|| Colours {
                 are_drivers,
                 shown: Vec::new(),
@@ -153,71 +165,46 @@ impl Leaves {
                 variances: Vec::new(),
             }),
         };
-        leaves.push(first, [0, 0], 0);
+        leaves.grow(1);
+        leaves.learn_of(0, first);
         leaves.classify(0);
         leaves
     }
 
-    fn push(&mut self, new: &NewSample, halvings: [u8; 2], node: u32) {
-        let shown = PerChannel::from_fn(|channel| shown(new.values[channel]));
-        self.known.push(Known {
-            point: new.point,
-            shown: shown.a,
-            expected: Expected::NOTHING,
-        });
-        self.places.push(Place {
-            class: NEVER,
-            halvings,
-        });
-        self.counts[usize::from(NEVER)] += 1;
-        self.nodes.push(node);
-        if let Some(colours) = &mut self.colours {
-            colours.shown.push([shown.c1, shown.c2]);
-        }
-        if let Some(doubts) = &mut self.doubts {
-            doubts.variances.push(0.0);
-        }
-    }
-
     fn cell(&self, leaf: u32) -> GridCell {
         let leaf = leaf as usize;
-        GridCell::holding(self.known[leaf].point, self.places[leaf].halvings)
+        GridCell::holding(self.known[leaf].point, self.halvings[leaf])
     }
 
     /// The leaves of the next round, in its order; none if no leaf may be split.
     pub(crate) fn next_round(&mut self) -> Vec<u32> {
-        if self.map.resize(self.known.len()) {
+        if let Some(kept) = self.map.resize(self.known.len()) {
             for leaf in 0..as_number(self.known.len()) {
-                self.map.enter(leaf, self.cell(leaf));
+                if !kept.shows(self.halvings[leaf as usize]) {
+                    self.map.enter(leaf, self.cell(leaf));
+                }
             }
         }
         let wanted = match self.counts[usize::from(DUE)] {
             0 => (self.known.len() / SHARE).max(1),
             due => due,
         };
-        let leaves = as_number(self.places.len());
         if self.doubts.is_none() {
-            let places = &self.places;
-            return round(
-                leaves,
-                |leaf| places[leaf as usize].class,
-                &self.counts,
-                wanted,
-            );
+            return round(&self.classes, &self.counts, wanted);
         }
         let unknown = self.learn();
-        let classes = self.places.iter().zip(unknown);
+        let classes = self.classes.iter().zip(unknown);
         let classes: Vec<u16> = classes
-            .map(|(place, is_unknown)| {
-                let rests = !is_unknown && place.class != DUE;
-                if rests { NEVER } else { place.class }
+            .map(|(&class, is_unknown)| {
+                let rests = !is_unknown && class != DUE;
+                if rests { NEVER } else { class }
             })
             .collect();
         let mut counts = vec![0; CLASSES];
         for &class in &classes {
             counts[usize::from(class)] += 1;
         }
-        round(leaves, |leaf| classes[leaf as usize], &counts, wanted)
+        round(&classes, &counts, wanted)
     }
 
     /// Whether each leaf lies in a region that is not known, if that is asked.
@@ -243,137 +230,208 @@ impl Leaves {
         Some(unknown.map(|(leaf, _)| self.cell(leaf).cell().area()).sum())
     }
 
-    /// How a leaf is to be split.
-    pub(crate) fn split_of(&self, leaf: u32) -> Split {
-        let Known {
-            point, expected, ..
-        } = self.known[leaf as usize];
-        let cell = self.cell(leaf);
-        let axis = cell.cell().cut(self.size_px, expected.axis());
-        let half = 1 - cell.half_of(point, axis);
-        Split {
+    /// Where the sample of the whole screen is taken.
+    pub(crate) fn first_point(plan: &TracePlan) -> GridPoint {
+        Halving::new(plan.size_px, plan.seed).first_point()
+    }
+
+    /// The places of some leaves in the list, in an order in which those that are near on the screen are near.
+    pub(crate) fn spatial_order(&self, leaves: &[u32]) -> Vec<u32> {
+        spatial_order(leaves.iter().map(|&leaf| self.known[leaf as usize].point))
+    }
+
+    #[inline(always)]
+    fn gather_halves(&self, halved: &[Halved], meetings: &mut Meetings) {
+        let halves = halved.iter().flat_map(|halved| [halved.old, halved.new]);
+        for (lane, own) in halves.enumerate().take(AT_ONCE) {
+            let Known { point, shown, .. } = self.known[own as usize];
+            let halvings = self.halvings[own as usize];
+            meetings.own[lane] = own;
+            meetings.shown[lane] = shown;
+            for along in [0, 1] {
+                meetings.points[along][lane] = point.0[along];
+                meetings.halvings[along][lane] = u32::from(halvings[along]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn gather_others(&self, count: usize, meetings: &mut Meetings) {
+        for (side, axis) in SIDES.into_iter().enumerate() {
+            for lane in 0..count.min(AT_ONCE) {
+                let found = self.map.at(meetings.squares[side][lane]);
+                let is_end = meetings.borders[side][lane] == 0;
+                let other = if is_end { meetings.own[lane] } else { found };
+                let Known {
+                    point,
+                    shown,
+                    expected,
+                } = self.known[other as usize];
+                meetings.others[side][lane] = other;
+                meetings.their_points[side][lane] = point.0[axis as usize];
+                meetings.their_shown[side][lane] = shown;
+                meetings.their_expected[side][lane] = expected;
+            }
+        }
+    }
+
+    /// The variances by all drivers, if there are others than A.
+    fn compare_colours(&self, count: usize, meetings: &mut Meetings) {
+        if !self
+            .colours
+            .as_ref()
+            .is_some_and(|colours| colours.are_drivers)
+        {
+            return;
+        }
+        for side in 0..4 {
+            for lane in 0..count {
+                let variance = self.variance(meetings.own[lane], meetings.others[side][lane]);
+                meetings.variances[side][lane] = variance;
+            }
+        }
+    }
+
+    /// How leaves are to be split, at most [`LANES`], and where their new samples lie.
+    pub(crate) fn splits(&self, leaves: &[u32]) -> ArrayVec<(Split, GridPoint), LANES> {
+        let mut wholes = Wholes::default();
+        for (lane, &leaf) in leaves.iter().enumerate() {
+            let leaf = leaf as usize;
+            let Known {
+                point, expected, ..
+            } = self.known[leaf];
+            for along in [0, 1] {
+                wholes.points[along][lane] = point.0[along];
+                wholes.halvings[along][lane] = u32::from(self.halvings[leaf][along]);
+            }
+            wholes.prefers_x[lane] = u32::from(expected.axis() == Axis::X);
+        }
+        let free = self.halving.halve(&wholes);
+        let split = |(lane, &leaf): (usize, &u32)| Split {
             leaf,
             node: self.nodes[leaf as usize],
-            axis,
-            half,
-            free_half: cell.half(half, axis),
-        }
+            axis: free.axis(lane),
+            half: u8::from(free.half[lane] == 1),
+            free_half: free.cell(lane),
+        };
+        let splits = leaves.iter().enumerate().map(split);
+        splits.zip((0..).map(|lane| free.point(lane))).collect()
     }
 
     /// Splits leaves: the sample of each keeps its half, a new one is in the other. Both have no class before they
     /// [look around](Self::look_around).
+    ///
+    /// The new samples have the next numbers, in any order.
     pub(crate) fn split_all(&mut self, new: &[NewLeaf]) {
+        self.grow(new.len());
         for new in new {
             self.split(new);
         }
     }
 
-    fn split(&mut self, NewLeaf { split, sample }: &NewLeaf) {
+    /// Adds leaves of which nothing is known yet.
+    fn grow(&mut self, by: usize) {
+        let count = self.known.len() + by;
+        self.known.resize(count, Known::NOTHING);
+        self.classes.resize(count, NEVER);
+        self.halvings.resize(count, [0; 2]);
+        self.nodes.resize(count, 0);
+        self.counts[usize::from(NEVER)] += by;
+        if let Some(colours) = &mut self.colours {
+            colours.shown.resize(count, [f32::NAN; 2]);
+        }
+        if let Some(doubts) = &mut self.doubts {
+            doubts.variances.resize(count, 0.0);
+        }
+    }
+
+    fn split(&mut self, new: &NewLeaf) {
+        let NewLeaf { number, split, .. } = new;
         let old = split.leaf as usize;
-        let number = as_number(self.known.len());
-        let [old_node, new_node] = split.nodes(number);
+        let [old_node, new_node] = split.nodes(*number);
         let halvings = split.free_half.halvings;
         self.halved.push(Halved {
             old: split.leaf,
-            new: number,
+            new: *number,
             expected: self.known[old].expected,
         });
         self.known[old].expected = Expected::NOTHING;
-        self.places[old].halvings = halvings;
+        self.halvings[old] = halvings;
         self.nodes[old] = old_node;
         if let Some(doubts) = &mut self.doubts {
             doubts.variances[old] = 0.0;
         }
-        self.map.enter(number, split.free_half);
-        self.push(sample, halvings, new_node);
+        self.map.enter(*number, split.free_half);
+        let number = *number as usize;
+        self.halvings[number] = halvings;
+        self.nodes[number] = new_node;
+        self.learn_of(number, &new.sample);
+    }
+
+    /// Notes where a sample lies and what was found there.
+    fn learn_of(&mut self, number: usize, sample: &NewSample) {
+        let shown = PerChannel::from_fn(|channel| shown(sample.values[channel]));
+        self.known[number].point = sample.point;
+        self.known[number].shown = shown.a;
+        if let Some(colours) = &mut self.colours {
+            colours.shown[number] = [shown.c1, shown.c2];
+        }
     }
 
     /// Puts a leaf into the class that it has now.
     #[inline]
     fn classify(&mut self, leaf: u32) {
         let leaf = leaf as usize;
-        let place = &mut self.places[leaf];
         let variance = self.known[leaf].expected.variance();
-        let class = self.rule.class(depth(place.halvings), variance);
-        self.counts[usize::from(place.class)] -= 1;
+        let class = self.rule.class(depth(self.halvings[leaf]), variance);
+        let before = std::mem::replace(&mut self.classes[leaf], class);
+        self.counts[usize::from(before)] -= 1;
         self.counts[usize::from(class)] += 1;
-        place.class = class;
     }
 
     /// All halves that were made since the last call look at what lies around them.
     ///
     /// What they find depends on nothing that they enter, so they look on all threads, and enter it in turn.
     pub(crate) fn look_around(&mut self) {
-        let mut halved = std::mem::take(&mut self.halved);
+        let halved = std::mem::take(&mut self.halved);
+        let mut found = std::mem::take(&mut self.found);
         for batch in halved.chunks(BATCH) {
-            let looks: Vec<Looks> = batch
+            let looks = batch.chunks(AT_ONCE / 2).len();
+            found.resize_with(looks.max(found.len()), Found::default);
+            batch
                 .par_chunks(AT_ONCE / 2)
-                .map(|halved| self.look(halved))
-                .collect();
-            for (half, meetings) in looks.iter().flatten() {
-                self.take_in(half, meetings);
+                .zip(&mut found)
+                .with_min_len(4)
+                .for_each_init(Meetings::default, |meetings, (halved, found)| {
+                    self.arch.dispatch(Look(self, halved, meetings, found));
+                });
+            for found in &found[..looks] {
+                self.take_in(found);
             }
             for &halved in batch {
                 self.inherit(halved);
             }
+            if self.doubts.is_some() {
+                batch
+                    .iter()
+                    .flat_map(|h| [h.old, h.new])
+                    .for_each(|own| self.doubt(own));
+            }
         }
-        halved.clear();
+        self.found = found;
         self.halved = halved;
+        self.halved.clear();
     }
 
-    /// What some halves find around them; in two steps, so that the memory is asked for many things at a time.
-    fn look(&self, halved: &[Halved]) -> Looks {
-        let mut halves = ArrayVec::<Half, AT_ONCE>::new();
-        for own in halved
-            .iter()
-            .flat_map(|&Halved { old, new, .. }| [old, new])
-        {
-            let cell = self.cell(own);
-            let around = self.map.around(own, cell);
-            halves.push(Half { own, cell, around });
+    /// Enters what some halves found.
+    fn take_in(&mut self, found: &Found) {
+        for &(other, expected) in &found.there {
+            self.raise(other, expected);
         }
-        let looks = halves.iter().map(|half| (*half, self.meetings(half)));
-        looks.collect()
-    }
-
-    /// What a leaf and its neighbours lead to expect in each other.
-    #[inline]
-    fn meetings(&self, half: &Half) -> Meetings {
-        let Half { own, cell, around } = *half;
-        let own_known = self.known[own as usize];
-        let borders = cell.sides();
-        let mut meetings = Meetings {
-            here: Expected::NOTHING,
-            there: [Expected::NOTHING; 4],
-        };
-        for (side, axis) in SIDES.into_iter().enumerate() {
-            let known = self.known[around[side] as usize];
-            let variance = match &self.colours {
-                Some(Colours { are_drivers, .. }) if *are_drivers => {
-                    self.variance(own, around[side])
-                }
-                _ => halved_square(own_known.shown - known.shown),
-            };
-            let places = [own_known, known].map(|known| known.point.0[axis as usize]);
-            let [here, there] = expected_variances(variance, share(borders[side], places));
-            meetings.here = meetings.here.max(Expected::new(here, axis));
-            meetings.there[side] = Expected::new(there, axis);
-        }
-        meetings
-    }
-
-    /// Enters what a leaf and its neighbours met.
-    #[inline]
-    fn take_in(&mut self, half: &Half, meetings: &Meetings) {
-        // A leaf beyond which the screen ends meets itself, without a difference.
-        for (&other, &there) in half.around.iter().zip(&meetings.there) {
-            self.raise(other, there);
-        }
-        let expected = &mut self.known[half.own as usize].expected;
-        *expected = meetings.here.max(*expected);
-        self.classify(half.own);
-        if self.doubts.is_some() {
-            self.doubt(half);
+        for &(own, here) in &found.here {
+            let expected = &mut self.known[own as usize].expected;
+            *expected = here.max(*expected);
+            self.classify(own);
         }
     }
 
@@ -388,7 +446,7 @@ impl Leaves {
     /// Where the map is too coarse to show the halves, they are expected to be as the whole was, or as they differ.
     fn inherit(&mut self, halved: Halved) {
         let Halved { old, new, expected } = halved;
-        if self.map.shows(self.cell(new)) {
+        if self.map.grid().shows(self.halvings[new as usize]) {
             return;
         }
         let variance = self.variance(old, new).max(INHERITED * expected.variance());
@@ -398,17 +456,19 @@ impl Leaves {
         }
     }
 
-    /// The same as [`Self::meetings`] in the channel that is to be known.
-    fn doubt(&mut self, half: &Half) {
+    /// What a half and its neighbours lead to expect in each other in the channel that is to be known.
+    fn doubt(&mut self, own: u32) {
+        let cell = self.cell(own);
+        let around = self.map.around(own, cell);
         let Some(doubts) = &mut self.doubts else {
             return;
         };
         for (side, axis) in SIDES.into_iter().enumerate() {
-            let leaves = [half.own, half.around[side]];
+            let leaves = [own, around[side]];
             let places = leaves.map(|leaf| self.known[leaf as usize].point.0[axis as usize]);
             let differences = differences(&self.known, self.colours.as_ref(), leaves);
             let doubt = halved_square(differences[doubts.channel]);
-            let expected = expected_variances(doubt, share(half.cell.sides()[side], places));
+            let expected = expected_variances(doubt, share(cell.sides()[side], places));
             for (leaf, expected) in leaves.into_iter().zip(expected) {
                 let variance = &mut doubts.variances[leaf as usize];
                 *variance = variance.max(expected);
@@ -445,12 +505,8 @@ fn differences(known: &[Known], colours: Option<&Colours>, leaves: [u32; 2]) -> 
     }
 }
 
-fn halved_square(difference: f32) -> f32 {
-    0.5 * difference * difference
-}
-
 fn depth(halvings: [u8; 2]) -> u32 {
-    halvings.map(u32::from).iter().sum()
+    u32::from(halvings[0]) + u32::from(halvings[1])
 }
 
 /// A value as far as a display can show it: white has A = 1, and no colour of sRGB has a chroma beyond ±1. A

@@ -11,16 +11,18 @@
 //!
 //! Source: Meyer & Liu (1992), sections 3.1 to 3.3.
 
+use arrayvec::ArrayVec;
 use protocols::{Channel, PerChannel, RefinementDriver};
 use rayon::prelude::*;
 
 use crate::cell::Cell;
 use crate::checkpoint::TakenSample;
 use crate::confidence::Confidence;
+use crate::halving::LANES;
 use crate::leaves::Leaves;
 use crate::priority::PriorityRule;
-use crate::sampler::{GridPoint, Sampler, ScreenPoint};
-use crate::screen_tree::{NewLeaf, NewSample, Reach, ScreenTree, Split};
+use crate::sampler::{GridPoint, Sampler};
+use crate::screen_tree::{NewLeaf, NewSample, Reach, ScreenTree};
 
 /// Samples taken between two reports of progress: a round is taken in pieces of this many.
 const BATCH: usize = 4096;
@@ -112,8 +114,7 @@ pub(crate) fn trace_from<S: Sampler>(
 ) -> ScreenTree {
     let rays = plan.rays();
     let mut ray_tree = S::RayTree::default();
-    let [point, ..] = Cell::sample_points([Cell::ROOT; 4], plan.seed);
-    let first = Probe::new(plan, 0, point, 0);
+    let first = Probe::new(plan, 0, Leaves::first_point(plan), 0);
     let first = match taken.first() {
         Some(taken) => first.recall(*taken),
         None => first.take(sampler, &mut ray_tree),
@@ -151,9 +152,9 @@ struct Probe {
 }
 
 impl Probe {
-    fn new(plan: &TracePlan, sample: usize, point: ScreenPoint, depth: u32) -> Self {
+    fn new(plan: &TracePlan, sample: usize, point: GridPoint, depth: u32) -> Self {
         Self {
-            point: point.into(),
+            point,
             is_shaded: PerChannel::from_fn(|c| plan.is_shaded(c, sample, depth)),
         }
     }
@@ -181,7 +182,8 @@ impl Probe {
     }
 }
 
-/// Finds the new samples of a batch of leaves, in its order, taken on all threads or recalled.
+/// Finds the new samples of a batch of leaves, taken on all threads or recalled: each has the number that its
+/// leaf's place in the batch gives it, but they stand in an order in which what is near on the screen is near.
 ///
 /// `first` is the number of the first of them.
 fn sample_batch<S: Sampler>(
@@ -191,30 +193,32 @@ fn sample_batch<S: Sampler>(
     taken: &[TakenSample],
     new: &mut Vec<NewLeaf>,
 ) {
-    let find = |ray_tree: &mut S::RayTree,
-                (place, (four, new)): (usize, (&[u32], &mut [NewLeaf]))| {
-        // The last of fewer than four stands in for those that are missing.
-        let splits = std::array::from_fn(|lane| leaves.split_of(four[lane.min(four.len() - 1)]));
-        let cells = splits.map(|split: Split| split.free_half.cell());
-        let points = Cell::sample_points(cells, plan.seed);
-        for (lane, new) in new.iter_mut().enumerate() {
-            let number = first + 4 * place + lane;
-            let probe = Probe::new(plan, number, points[lane], cells[lane].depth());
+    let find = |ray_tree: &mut S::RayTree, (places, new): (&[u32], &mut [NewLeaf])| {
+        let some = places.iter().map(|&place| batch[place as usize]);
+        let splits = leaves.splits(&some.collect::<ArrayVec<u32, LANES>>());
+        for ((new, &place), (split, point)) in new.iter_mut().zip(places).zip(splits) {
+            let number = first + place as usize;
+            let probe = Probe::new(plan, number, point, split.free_half.depth());
             let sample = match taken.get(number) {
                 Some(taken) => probe.recall(*taken),
                 None => probe.take(sampler, ray_tree),
             };
             *new = NewLeaf {
-                split: splits[lane],
+                number: as_number(number),
+                split,
                 sample,
             };
         }
     };
     new.resize(batch.len(), NewLeaf::default());
-    batch
-        .par_chunks(4)
-        .zip(new.par_chunks_mut(4))
-        .enumerate()
-        .with_min_len(8)
+    leaves
+        .spatial_order(batch)
+        .par_chunks(LANES)
+        .zip(new.par_chunks_mut(LANES))
+        .with_min_len(2)
         .for_each_init(S::RayTree::default, find);
+}
+
+fn as_number(count: usize) -> u32 {
+    u32::try_from(count).unwrap_or(u32::MAX)
 }

@@ -2,16 +2,14 @@
 
 use crate::priority::{DUE, NEVER};
 
+/// Leaves that are looked at together.
+const TOGETHER: usize = 32;
+
 /// The leaves of the highest classes, `wanted` of them or as many as may be split; the highest class first,
 /// and within a class the older leaf.
 ///
-/// `leaves` is how many leaves there are, and `counts` how many each class has.
-pub(crate) fn round(
-    leaves: u32,
-    class: impl Fn(u32) -> u16,
-    counts: &[usize],
-    wanted: usize,
-) -> Vec<u32> {
+/// `classes` has the class of each leaf, and `counts` how many leaves each class has.
+pub(crate) fn round(classes: &[u16], counts: &[usize], wanted: usize) -> Vec<u32> {
     // Where each class begins in the round; the lowest may be cut short.
     let mut begins = vec![0; counts.len()];
     let (mut end, mut lowest) = (0, DUE);
@@ -24,21 +22,32 @@ pub(crate) fn round(
         end += counts[place];
         lowest = highest;
     }
-    let mut chosen = vec![0; end + 1];
-    let mut found = 0;
-    for leaf in 0..leaves {
-        // Each is written; the next one takes the place of one that is not chosen.
-        chosen[found] = leaf;
-        found += usize::from(class(leaf) >= lowest);
-    }
     let mut round = vec![0; end];
-    for &leaf in &chosen[..found] {
-        let begin = &mut begins[usize::from(class(leaf))];
-        round[*begin] = leaf;
-        *begin += 1;
+    let mut first = 0;
+    for some in classes.chunks(TOGETHER) {
+        let mut chosen = chosen(some, lowest);
+        while chosen != 0 {
+            let place = chosen.trailing_zeros();
+            chosen &= chosen - 1;
+            let begin = &mut begins[usize::from(some[place as usize])];
+            round[*begin] = first + place;
+            *begin += 1;
+        }
+        first += 32;
     }
     round.truncate(wanted);
     round
+}
+
+/// One bit for each leaf, at most 32, whose class is at least this.
+fn chosen(classes: &[u16], lowest: u16) -> u32 {
+    let bit = |class: u16, place: usize| u32::from(class >= lowest) << place;
+    match classes.first_chunk::<TOGETHER>() {
+        Some(all) => (0..TOGETHER).fold(0, |bits, place| bits | bit(all[place], place)),
+        None => (0..)
+            .zip(classes)
+            .fold(0, |bits, (place, &class)| bits | bit(class, place)),
+    }
 }
 
 #[cfg(test)]
@@ -66,7 +75,7 @@ mod tests {
             sorted.retain(|&leaf| classes[leaf as usize] != NEVER);
             sorted.sort_by_key(|&leaf| std::cmp::Reverse(classes[leaf as usize]));
             for wanted in [1, 31, 200, sorted.len(), 500] {
-                let found = round(500, |leaf| classes[leaf as usize], &counts, wanted);
+                let found = round(&classes, &counts, wanted);
                 assert_eq!(found, sorted[..wanted.min(sorted.len())]);
             }
         }

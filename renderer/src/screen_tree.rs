@@ -47,7 +47,7 @@ impl Node {
     const NEW_IS_FIRST: u32 = 1 << 31;
     const ALONG_Y: u32 = 1 << 30;
 
-    const fn split_by(sample: u32, half: usize, axis: Axis) -> Self {
+    const fn split_by(sample: u32, half: u8, axis: Axis) -> Self {
         let first = if half == 0 { Self::NEW_IS_FIRST } else { 0 };
         let along_y = match axis {
             Axis::X => 0,
@@ -154,6 +154,8 @@ pub(crate) struct NewSample {
 /// A new sample, and the leaf that is split for it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct NewLeaf {
+    /// The number of the sample.
+    pub(crate) number: u32,
     pub(crate) split: Split,
     pub(crate) sample: NewSample,
 }
@@ -166,7 +168,7 @@ pub(crate) struct Split {
     pub(crate) node: u32,
     pub(crate) axis: Axis,
     /// Which half the sample does not lie in, so that it needs a new one: 0 or 1.
-    pub(crate) half: usize,
+    pub(crate) half: u8,
     /// That half.
     pub(crate) free_half: GridCell,
 }
@@ -202,18 +204,18 @@ impl ScreenTree {
             unknown_area: None,
         };
         tree.store(&[NewLeaf {
-            split: Split::default(),
             sample: *first,
+            ..NewLeaf::default()
         }]);
         tree
     }
 
-    /// Splits leaves, one after the other: the sample keeps the half that it lies in, the new one goes into the
-    /// other.
+    /// Splits leaves: the sample of each keeps the half that it lies in, the new one goes into the other.
+    ///
+    /// The new samples have the next numbers, in any order.
     pub(crate) fn split(&mut self, new: &[NewLeaf]) {
-        let first = as_index(self.points.len());
-        for (sample, NewLeaf { split, .. }) in (first..).zip(new) {
-            self.nodes[split.node as usize] = Node::split_by(sample, split.half, split.axis);
+        for NewLeaf { number, split, .. } in new {
+            self.nodes[split.node as usize] = Node::split_by(*number, split.half, split.axis);
         }
         self.nodes
             .resize(self.nodes.len() + 2 * new.len(), Node::LEAF);
@@ -221,11 +223,16 @@ impl ScreenTree {
     }
 
     fn store(&mut self, new: &[NewLeaf]) {
-        let first = as_index(self.points.len());
-        self.points.extend(new.iter().map(|new| new.sample.point));
+        let first = self.points.len();
+        self.points.resize(first + new.len(), GridPoint::default());
+        for NewLeaf { number, sample, .. } in new {
+            self.points[*number as usize] = sample.point;
+        }
         for channel in Channel::ALL {
-            let values = new.iter().map(|new| new.sample.values[channel]);
-            self.samples[channel].extend(first, values);
+            let values = new
+                .iter()
+                .map(|new| (new.number, new.sample.values[channel]));
+            self.samples[channel].extend(as_index(first), values);
         }
     }
 
