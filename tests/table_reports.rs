@@ -5,7 +5,7 @@ mod acuity;
 use std::fs;
 use std::path::Path;
 
-use acuity::{acuity, stderr, text_of};
+use acuity::{PROTOCOL, acuity, stderr, text_of};
 
 const PLAN: &str = "study = \"exports\"\ntitle = \"Two pictures\"\n[table]\nsubject = \"who\"\nrating = \"response\"\n\
     where = [\"task=rating\"]\nscale = { lowest = 0, highest = 10 }\n[analysis]\nwithin = [\"rays\"]\n\
@@ -16,10 +16,11 @@ fn export(name: &str) -> String {
     path.join(name).to_string_lossy().into_owned()
 }
 
-/// Runs `report` with words parted by blanks, of which those that begin with `#` are exports; stdout.
+/// Runs `report` with words parted by blanks (P is the paper's protocol, those that begin with `#` are exports); stdout.
 fn report(folder: &Path, words: &str) -> Result<String, String> {
     let mut arguments = vec!["report".to_owned()];
     for word in words.split(' ') {
+        let word = if word == "P" { PROTOCOL } else { word };
         let name = word.strip_prefix('#');
         arguments.push(name.map_or_else(|| word.to_owned(), export));
     }
@@ -70,6 +71,10 @@ fn options_that_contradict_a_protocol_or_a_table_are_refused() {
         ("plan.toml #jspsych-8.3.0.csv --within rays", "--within"),
         ("plan.toml #jspsych-8.3.0.csv --pairwise rays", "--pairwise"),
         ("plan.toml #jspsych-8.3.0.csv --data x", "--data"),
+        (
+            "P #jspsych-8.3.0.csv --subject who --rating response",
+            "a column \"channel\"",
+        ),
         ("plan.toml plan.toml", "second protocol"),
         ("plan.toml", "stimuli"),
         ("plan.toml --subject who", "--subject"),

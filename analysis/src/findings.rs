@@ -2,9 +2,12 @@
 
 use protocols::{AnalysisPlan, Scale};
 
-use crate::TableAnalysis;
+use crate::axis::Axis;
+use crate::figure::Palette;
 use crate::fragility::Fragility;
+use crate::observer_figure::ObserverFigure;
 use crate::screening::ObserverScreening;
+use crate::{CellMatrix, TableAnalysis};
 
 /// With fewer subjects than this a report begins with a warning.
 const FEW: usize = 6;
@@ -14,6 +17,7 @@ const FEW: usize = 6;
 pub(crate) struct Findings<'a> {
     pub(crate) plan: &'a AnalysisPlan,
     pub(crate) table: &'a TableAnalysis,
+    pub(crate) cells: &'a CellMatrix,
     pub(crate) fragility: &'a Fragility,
     /// How the observers agree, where all rated the same.
     pub(crate) observers: Option<&'a ObserverScreening>,
@@ -29,6 +33,12 @@ pub(crate) struct Findings<'a> {
 }
 
 impl Findings<'_> {
+    /// The curves of each observer, where all rated the same and a figure can hold them.
+    pub(crate) fn observer_figure(&self, palette: Palette) -> Option<ObserverFigure<'_>> {
+        self.observers?;
+        ObserverFigure::new(self.cells, self.scale.map(Axis::of_scale), palette)
+    }
+
     /// The banner for few subjects.
     pub(crate) fn too_few(&self) -> Option<String> {
         (self.n_subjects < FEW).then(|| {

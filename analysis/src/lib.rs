@@ -48,6 +48,7 @@ mod methods;
 mod natural_order;
 mod noncentral_t;
 mod observations;
+mod observer_figure;
 mod observer_section;
 mod p_adjustment;
 mod page;

@@ -3,10 +3,12 @@
 use protocols::rating::RatingRow;
 
 use crate::apa;
-use crate::document::{Section, Table};
+use crate::document::{Block, Section, Table};
+use crate::figure::Palette;
 use crate::findings::Findings;
 use crate::fragility_section::FEWEST_OBSERVERS;
 use crate::interval::{mean, standard_deviation};
+use crate::observer_figure::ObserverFigure;
 use crate::page::escaped;
 use crate::screening::{ObserverScreening, correlation};
 use crate::sections::Sections;
@@ -46,7 +48,12 @@ impl Findings<'_> {
             " The change over the session is the slope of the ratings, less mean opinion and bias, from the first trial to the \
              last; slower or faster is the correlation of the logarithm of the answer time with the trial."
         };
-        Some(section.table(table).note(format!(
+        let section = section.table(table);
+        let section = match self.observer_figure(Palette::PAGE) {
+            Some(figure) => section.block(curves(&figure)),
+            None => section,
+        };
+        Some(section.note(format!(
             "Both screens are reported; neither was applied: every observer above is in every result. Against random, inverted, \
              constant and half-shuffled ratings the correlation screen finds nearly all and the kurtosis screen few, so it is the \
              one to act on.{of_drift}"
@@ -127,6 +134,21 @@ impl Sections<'_> {
                 Drift::new(&residuals, &ln_times)
             })
             .collect()
+    }
+}
+
+/// The curves of each observer as a figure.
+fn curves(figure: &ObserverFigure<'_>) -> Block {
+    let by = figure.by().map_or_else(String::new, |by| {
+        format!(", a line for each level of {}", escaped(by))
+    });
+    Block::Figure {
+        svg: figure.to_svg(),
+        file: "observers".to_owned(),
+        caption: format!(
+            "Each observer’s ratings along {}{by}; the broad grey lines are the means of all.",
+            escaped(figure.factor())
+        ),
     }
 }
 

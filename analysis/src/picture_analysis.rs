@@ -65,7 +65,7 @@ impl PictureAnalysis {
             study: StudyAnalysis {
                 observers: screening(&ids, &members, study.protocol.session.layout),
                 opinions,
-                ..StudyAnalysis::of_effects(subjects, incomplete, table, fragility)
+                ..StudyAnalysis::of_effects(subjects, incomplete, table, fragility, cells)
             },
         })
     }

@@ -191,6 +191,8 @@ fn files(
         to_paste: sections.to_paste_as_text(),
         means_csv,
         figure: (figure_name(sections.study), figure_svg),
+        observers: (sections.findings().observer_figure(Palette::PRINT))
+            .map(|figure| figure.to_svg()),
     };
     contents.files()
 }

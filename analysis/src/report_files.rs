@@ -17,6 +17,8 @@ pub(crate) struct ReportFiles<'a> {
     pub(crate) means_csv: String,
     /// The name of the figure, and the figure as SVG for paper.
     pub(crate) figure: (&'static str, String),
+    /// The curves of each observer, likewise.
+    pub(crate) observers: Option<String>,
 }
 
 impl ReportFiles<'_> {
@@ -29,7 +31,7 @@ impl ReportFiles<'_> {
         let (name, svg) = self.figure;
         let picture = FigurePicture::new(&svg)?;
         let text = |name: &str, text: String| (name.to_owned(), text.into_bytes());
-        Ok(vec![
+        let mut files = vec![
             text("report.html", self.document.to_html()),
             text("report.md", self.document.to_markdown()),
             ("report.pdf".to_owned(), self.document.to_pdf()?),
@@ -44,7 +46,15 @@ impl ReportFiles<'_> {
             (format!("{name}.pdf"), picture.to_pdf()),
             text(&format!("{name}-outlined.svg"), picture.to_outlines()),
             text(&format!("{name}.svg"), svg),
-        ])
+        ];
+        if let Some(svg) = self.observers {
+            files.push((
+                "observers.png".to_owned(),
+                FigurePicture::new(&svg)?.to_png()?,
+            ));
+            files.push(text("observers.svg", svg));
+        }
+        Ok(files)
     }
 }
 

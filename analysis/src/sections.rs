@@ -70,6 +70,7 @@ impl Sections<'_> {
         Findings {
             plan,
             table: &self.analysis.table,
+            cells: &self.analysis.cells,
             fragility: &self.analysis.fragility,
             observers: self.analysis.observers.as_ref(),
             n_subjects: self.analysis.subjects.len(),

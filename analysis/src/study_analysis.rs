@@ -34,6 +34,8 @@ pub(crate) struct StudyAnalysis {
     pub(crate) anova: AnovaTable,
     /// The same with all that follows it.
     pub(crate) table: TableAnalysis,
+    /// The cells that it rests on.
+    pub(crate) cells: CellMatrix,
     /// Who rated how, where everyone rated the same images.
     pub(crate) observers: Option<ObserverScreening>,
     /// The mean of each image over these observers.
@@ -144,6 +146,7 @@ impl StudyAnalysis {
             incomplete,
             anova: table.anova.clone(),
             table,
+            cells,
             observers,
             opinions: (conditions.iter())
                 .map(|condition| (condition.stimulus.id.clone(), condition.mean))
@@ -161,6 +164,7 @@ impl StudyAnalysis {
         incomplete: Vec<Incomplete>,
         table: TableAnalysis,
         fragility: Fragility,
+        cells: CellMatrix,
     ) -> Self {
         Self {
             subjects,
@@ -168,6 +172,7 @@ impl StudyAnalysis {
             conditions: Vec::new(),
             anova: table.anova.clone(),
             table,
+            cells,
             observers: None,
             opinions: BTreeMap::new(),
             fragility,

@@ -45,6 +45,8 @@ pub fn report_of_tables(
         to_paste: sections.to_paste_as_text(),
         means_csv: numbers.means.to_csv(study.plan.confidence),
         figure: ("figure", figure(Palette::PRINT)),
+        observers: (sections.findings().observer_figure(Palette::PRINT))
+            .map(|figure| figure.to_svg()),
     };
     let written = write_files(out_dir, files.files()?)?;
     Ok(ReportSummary {

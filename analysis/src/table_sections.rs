@@ -52,7 +52,7 @@ impl TableSections<'_> {
         }
     }
 
-    fn findings(&self) -> Findings<'_> {
+    pub(crate) fn findings(&self) -> Findings<'_> {
         let numbers = self.numbers;
         let n_subjects = numbers.cells.subjects.len();
         let noun = if numbers.observations.has_simulated {
@@ -65,6 +65,7 @@ impl TableSections<'_> {
         Findings {
             plan: &self.study.plan,
             table: &numbers.table,
+            cells: &numbers.cells,
             fragility: &numbers.fragility,
             observers: numbers.observers.as_ref(),
             n_subjects,

@@ -88,6 +88,8 @@ fn every_file_is_written_and_no_other() {
             "figure-10.svg",
             "follow-ups.csv",
             "means.csv",
+            "observers.png",
+            "observers.svg",
             "report.html",
             "report.md",
             "report.pdf",
