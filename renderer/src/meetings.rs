@@ -174,7 +174,11 @@ mod tests {
         (mixed ^ (mixed >> 15)).wrapping_mul(0x846c_a68b)
     }
 
-    /// Halves in the middle of the screen and what stands at any place; some were not shaded.
+    fn number(place: usize) -> u32 {
+        u32::try_from(place).unwrap()
+    }
+
+    /// Halves and others at random places; some were not shaded.
     fn meetings(seed: u32) -> Meetings {
         let mut meetings = Meetings::default();
         let value = |number: u32| match random(number) {
@@ -182,17 +186,17 @@ mod tests {
             bits => (bits >> 8) as f32 / 16_777_216.0,
         };
         for lane in 0..AT_ONCE {
-            let number = 1000 * (seed * AT_ONCE as u32 + lane as u32);
-            meetings.own[lane] = lane as u32;
-            meetings.shown[lane] = value(number);
+            let first = 1000 * (seed * number(AT_ONCE) + number(lane));
+            meetings.own[lane] = number(lane);
+            meetings.shown[lane] = value(first);
             for along in [0, 1] {
-                meetings.points[along][lane] = random(number + 10 + along as u32);
-                meetings.halvings[along][lane] = random(number + 20 + along as u32) % 32;
+                meetings.points[along][lane] = random(first + 10 + number(along));
+                meetings.halvings[along][lane] = random(first + 20 + number(along)) % 32;
             }
             for side in 0..4 {
-                meetings.others[side][lane] = 100 + lane as u32;
-                meetings.their_shown[side][lane] = value(number + 30 + side as u32);
-                meetings.their_points[side][lane] = random(number + 40 + side as u32);
+                meetings.others[side][lane] = 100 + number(lane);
+                meetings.their_shown[side][lane] = value(first + 30 + number(side));
+                meetings.their_points[side][lane] = random(first + 40 + number(side));
             }
         }
         meetings
@@ -218,7 +222,7 @@ mod tests {
             Arch::new().dispatch(Meet(&mut meetings, grid));
             for lane in 0..AT_ONCE {
                 let point = GridPoint([0, 1].map(|along| meetings.points[along][lane]));
-                let halvings = [0, 1].map(|along| meetings.halvings[along][lane] as u8);
+                let halvings = [0, 1].map(|along| meetings.halvings[along][lane].to_le_bytes()[0]);
                 let sides = GridCell::holding(point, halvings).sides();
                 let mut here = Expected::NOTHING;
                 for (side, axis) in SIDES.into_iter().enumerate() {
@@ -264,7 +268,8 @@ mod tests {
         let mut found = Found::default();
         meetings.report(9, &mut found);
         let expected = (0..4).flat_map(|side| [1, 3, 5, 7].map(|lane| (side, lane)));
-        let expected = expected.map(|(side, lane)| (100 + lane as u32, meetings.there[side][lane]));
+        let expected =
+            expected.map(|(side, lane)| (100 + number(lane), meetings.there[side][lane]));
         let expected = expected.filter(|(_, there)| *there > Expected::NOTHING);
         assert_eq!(found.there, expected.collect::<Vec<_>>());
         assert!(found.here.iter().map(|(own, _)| *own).eq(0..9));
