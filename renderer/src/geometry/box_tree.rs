@@ -47,8 +47,9 @@ pub(crate) struct BoxTree {
 }
 
 impl BoxTree {
-    /// The tree over things with these boxes; each is known by its place among them.
-    pub(crate) fn over(boxes: &[Bounds]) -> Self {
+    /// The tree over things with these boxes; each is known by its place among them. A leaf holds at most
+    /// `most_in_leaf`, from 1 to 7: what costs as much as a visit.
+    pub(crate) fn over(boxes: &[Bounds], most_in_leaf: usize) -> Self {
         let all = boxes.iter().copied();
         let all = all.reduce(|one, other| one.joined(&other));
         let middle = all.map_or([0.0; 3], |bounds| rounded(bounds.center()));
@@ -60,7 +61,7 @@ impl BoxTree {
         let margin_m = MARGIN * 2.0 * radius_m;
         let bounds = all.map(|bounds| bounds.padded(margin_m));
         let is_single = DIAMETERS_M.contains(&(2.0 * radius_m));
-        let wide = nested(boxes, middle, margin_m);
+        let wide = nested(boxes, most_in_leaf, (middle, margin_m));
         Self {
             middle,
             bounds,
@@ -157,7 +158,7 @@ impl BoxTree {
 }
 
 /// The boxes, each with the margin, within boxes.
-fn nested(boxes: &[Bounds], middle: Vector, margin_m: f64) -> WideTree {
+fn nested(boxes: &[Bounds], most_in_leaf: usize, (middle, margin_m): (Vector, f64)) -> WideTree {
     if boxes.is_empty() {
         return WideTree::default();
     }
@@ -169,5 +170,5 @@ fn nested(boxes: &[Bounds], middle: Vector, margin_m: f64) -> WideTree {
         }
     };
     let boxes: Vec<SingleBox> = boxes.iter().map(single).collect();
-    WideTree::of(&SplitTree::over(&boxes))
+    WideTree::of(&SplitTree::over(&boxes, most_in_leaf))
 }

@@ -8,6 +8,9 @@ use std::ops::Range;
 use super::descent::{Visitor, Walk};
 use super::{Bounds, BoxTree, Hit, Ray, Shape, SingleRay, Span};
 
+/// Trying a shape costs about as much as trying eight boxes.
+const MOST_IN_LEAF: usize = 1;
+
 /// Shapes and the boxes over them.
 #[derive(Clone, Debug)]
 pub(crate) struct Hierarchy {
@@ -27,7 +30,7 @@ impl Hierarchy {
         let boxed = (0_u32..).zip(&shapes);
         let boxed = boxed.filter_map(|(index, shape)| Some((index, shape.bounds()?)));
         let (indices, boxes): (Vec<u32>, Vec<Bounds>) = boxed.unzip();
-        let tree = BoxTree::over(&boxes);
+        let tree = BoxTree::over(&boxes, MOST_IN_LEAF);
         let order = tree.order().iter().map(|&place| indices[place as usize]);
         let sorted = order.map(|index| (index, shapes[index as usize].clone()));
         Self {

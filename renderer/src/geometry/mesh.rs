@@ -17,7 +17,7 @@ use wide::f32x4;
 
 use super::box_tree::MARGIN;
 use super::descent::{Visitor, Walk};
-use super::packet::Packet;
+use super::packet::{LANES, Packet};
 use super::single_ray::{SingleRay, rounded};
 use super::triangle::{Triangle, vector};
 use super::{Bounds, BoxTree, Hit, Part, Ray, Span, Vector};
@@ -79,7 +79,7 @@ impl Mesh {
         };
         let triangles: Vec<Triangle> = (0..).zip(&faces).filter_map(triangle).collect();
         let boxes: Vec<Bounds> = triangles.iter().map(Triangle::bounds).collect();
-        let mut tree = BoxTree::over(&boxes);
+        let mut tree = BoxTree::over(&boxes, LANES);
         let size_m = SIZE * tree.diameter_m();
         let mut packets = Vec::new();
         let order = tree.order().to_vec();

@@ -6,8 +6,6 @@
 //!
 //! Source: Wald (2007), "On fast construction of SAH-based bounding volume hierarchies".
 
-/// How many things a leaf holds at most.
-pub(crate) const MOST_IN_LEAF: usize = 4;
 /// How many places for a split are tried across each axis, and one more.
 const BINS: usize = 24;
 
@@ -34,6 +32,8 @@ pub(crate) struct SplitTree {
     pub(crate) nodes: Vec<SplitNode>,
     /// The numbers of the things, leaf by leaf.
     pub(crate) order: Vec<u32>,
+    /// How many things a leaf holds at most.
+    pub(crate) most_in_leaf: usize,
 }
 
 /// A thing to be put into a leaf.
@@ -89,15 +89,18 @@ impl SingleBox {
 }
 
 impl SplitTree {
-    /// The tree over things with these boxes, at least one.
-    pub(crate) fn over(boxes: &[SingleBox]) -> Self {
+    /// The tree over things with these boxes, at least one, and with at most so many in a leaf.
+    pub(crate) fn over(boxes: &[SingleBox], most_in_leaf: usize) -> Self {
         let item = |(thing, bounds): (u32, &SingleBox)| Item {
             bounds: *bounds,
             center: [0, 1, 2].map(|axis| bounds.low[axis] + bounds.high[axis]),
             thing,
         };
         let mut items: Vec<Item> = (0..).zip(boxes).map(item).collect();
-        let mut tree = Self::default();
+        let mut tree = Self {
+            most_in_leaf,
+            ..Self::default()
+        };
         tree.nodes.push(SplitNode {
             bounds: SingleBox::NOTHING,
             first: 0,
@@ -112,7 +115,7 @@ impl SplitTree {
     fn split(&mut self, items: &mut [Item], place: usize, at: usize) {
         let all = items.iter().map(|item| item.bounds);
         let bounds = all.fold(SingleBox::NOTHING, |one, other| one.joined(&other));
-        if items.len() <= MOST_IN_LEAF {
+        if items.len() <= self.most_in_leaf {
             self.nodes[at] = SplitNode {
                 bounds,
                 first: place,
@@ -128,7 +131,7 @@ impl SplitTree {
         };
         self.nodes[at] = node;
         self.nodes.extend([node, node]);
-        let middle = parted(items);
+        let middle = parted(items, self.most_in_leaf);
         let (left, right) = items.split_at_mut(middle);
         self.split(left, place, first);
         self.split(right, place + middle, first + 1);
@@ -136,7 +139,7 @@ impl SplitTree {
 }
 
 /// Sorts the items into two parts, neither empty, and says where the second begins.
-fn parted(items: &mut [Item]) -> usize {
+fn parted(items: &mut [Item], most_in_leaf: usize) -> usize {
     let points = items.iter().map(|item| SingleBox {
         low: item.center,
         high: item.center,
@@ -157,7 +160,7 @@ fn parted(items: &mut [Item]) -> usize {
             bin.count += 1;
         }
     }
-    let places = (0..3).filter_map(|axis| best_place(&bins[axis], axis));
+    let places = (0..3).filter_map(|axis| best_place(&bins[axis], axis, most_in_leaf));
     let best = places.min_by(|one, other| one.cost.total_cmp(&other.cost));
     let Some(best) = best else {
         return items.len() / 2;
@@ -183,7 +186,7 @@ fn bin_at(share: f32) -> usize {
 }
 
 /// The best place between the bins of an axis, if there is one with things on both sides.
-fn best_place(bins: &[Bin; BINS], axis: usize) -> Option<Place> {
+fn best_place(bins: &[Bin; BINS], axis: usize, most_in_leaf: usize) -> Option<Place> {
     let nothing = Bin {
         bounds: SingleBox::NOTHING,
         count: 0,
@@ -192,7 +195,7 @@ fn best_place(bins: &[Bin; BINS], axis: usize) -> Option<Place> {
         one.bounds = one.bounds.joined(&other.bounds);
         one.count += other.count;
     };
-    let cost = |bin: &Bin| bin.bounds.half_area() * bin.count.div_ceil(MOST_IN_LEAF) as f32;
+    let cost = |bin: &Bin| bin.bounds.half_area() * bin.count.div_ceil(most_in_leaf) as f32;
     let mut above = [nothing; BINS];
     for after in (0..BINS - 1).rev() {
         above[after] = above[after + 1];

@@ -11,7 +11,7 @@ use std::ops::Range;
 use arrayvec::ArrayVec;
 
 use super::box_node::{BoxNode, Child, WIDTH};
-use super::split_tree::{MOST_IN_LEAF, SingleBox, SplitNode, SplitTree};
+use super::split_tree::{SingleBox, SplitNode, SplitTree};
 
 /// The nodes of a tree of eight children to a node, the root first.
 #[derive(Clone, Debug, Default)]
@@ -24,6 +24,7 @@ pub(crate) struct WideTree {
 /// A binary tree, and what its parts cost a ray at best.
 struct Costs<'a> {
     binary: &'a [SplitNode],
+    most_in_leaf: usize,
     /// For each node what it costs if it is split among at most 1, 2 ... 7 boxes of a wider node.
     least: Vec<[f32; WIDTH - 1]>,
     /// How many things are below each node.
@@ -33,7 +34,7 @@ struct Costs<'a> {
 impl WideTree {
     /// The tree from a binary one.
     pub(crate) fn of(split: &SplitTree) -> Self {
-        let costs = Costs::of(&split.nodes);
+        let costs = Costs::of(split);
         let mut tree = Self::default();
         tree.add(&costs, &split.order, 0);
         tree
@@ -78,9 +79,11 @@ impl WideTree {
 }
 
 impl<'a> Costs<'a> {
-    fn of(binary: &'a [SplitNode]) -> Self {
+    fn of(split: &'a SplitTree) -> Self {
+        let binary = &split.nodes;
         let mut costs = Self {
             binary,
+            most_in_leaf: split.most_in_leaf,
             least: vec![[0.0; WIDTH - 1]; binary.len()],
             things: vec![0; binary.len()],
         };
@@ -110,7 +113,7 @@ impl<'a> Costs<'a> {
             return;
         }
         self.things[at] = self.things[below] + self.things[below + 1];
-        let as_leaf = if self.things[at] <= MOST_IN_LEAF {
+        let as_leaf = if self.things[at] <= self.most_in_leaf {
             area
         } else {
             f32::INFINITY
@@ -140,7 +143,7 @@ impl<'a> Costs<'a> {
     fn is_leaf(&self, at: usize) -> bool {
         let node = &self.binary[at];
         node.count > 0
-            || self.things[at] <= MOST_IN_LEAF && node.bounds.half_area() <= self.least[at][0]
+            || self.things[at] <= self.most_in_leaf && node.bounds.half_area() <= self.least[at][0]
     }
 
     /// The nodes that stand in the boxes of a wide node made of this one.
@@ -180,7 +183,7 @@ mod tests {
         let mut all = Vec::new();
         for child in *tree.nodes[at].children_mut() {
             if child.count() > 0 {
-                assert!(child.count() <= MOST_IN_LEAF);
+                assert!(child.count() <= 4);
                 all.extend(&tree.order[child.first()..child.first() + child.count()]);
             } else if child.first() > 0 {
                 all.extend(below(tree, child.first()));
@@ -199,7 +202,7 @@ mod tests {
                 SingleBox { low, high: low.map(|x| x + 1.0) }
             });
             let boxes: Vec<SingleBox> = boxes.collect();
-            let mut tree = WideTree::of(&SplitTree::over(&boxes));
+            let mut tree = WideTree::of(&SplitTree::over(&boxes, 4));
             let mut things = below(&mut tree, 0);
             things.sort_unstable();
             prop_assert!(things.into_iter().eq(0..u32::try_from(boxes.len()).unwrap()));
