@@ -5,7 +5,9 @@
 
 mod account;
 mod acuity_limits;
+mod arrivals;
 mod band_shader;
+mod beam;
 mod cell;
 mod chacha;
 mod channel_image;
@@ -52,6 +54,7 @@ mod scene_sampler;
 mod screen_tree;
 mod set_summary;
 mod shader;
+mod shadows;
 mod snapshots;
 mod spatial_order;
 mod spectra;
@@ -62,6 +65,7 @@ mod threads;
 mod tints;
 mod triangle_mesh;
 mod watch;
+mod wave;
 
 use protocols::{matrix3, opponent, srgb};
 

@@ -5,12 +5,14 @@
 
 use rayon::prelude::*;
 
+use crate::arrivals::Arriving;
 use crate::geometry::{Ray, RoundFan, Span, Vector};
 use crate::jitter::Jitter;
 use crate::sampler::ScreenPoint;
 use crate::scene::Scene;
 use crate::scene::light::{AreaLight, Arrival, Light, Source};
 use crate::scene::material::Highlight;
+use crate::shadows::Shadows;
 
 /// How far off a surface a new ray starts, so that it does not meet the same place again.
 pub(crate) const LIFT_M: f64 = 1e-6;
@@ -34,6 +36,14 @@ impl Surface {
     #[inline]
     pub(crate) fn lifted(&self) -> Vector {
         self.place + self.facing * LIFT_M
+    }
+
+    #[inline]
+    pub(crate) fn shadow_ray(&self, arrival: &Arrival) -> Ray {
+        Ray {
+            origin: self.lifted(),
+            direction: arrival.towards,
+        }
     }
 }
 
@@ -62,6 +72,14 @@ pub(crate) struct Receiver {
     pub(crate) mirrors: bool,
 }
 
+/// A surface on which light falls.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lighted {
+    pub(crate) surface: Surface,
+    pub(crate) receiver: Receiver,
+    pub(crate) key: HitKey,
+}
+
 /// The lights of a scene and what stands round them.
 #[derive(Clone, Debug)]
 pub(crate) struct Lighting<'scene> {
@@ -80,6 +98,11 @@ impl<'scene> Lighting<'scene> {
             scene,
             fans: scene.lights.par_iter().map(fan).collect(),
         }
+    }
+
+    /// How many lights there are, without ambient light.
+    pub(crate) fn lights(&self) -> u16 {
+        u16::try_from(self.fans.len()).unwrap_or(u16::MAX)
     }
 
     /// What arrives from one of the lights.
@@ -111,6 +134,52 @@ impl<'scene> Lighting<'scene> {
                 };
                 lit_from(&arrival, surface, receiver, is_blocked)
             }
+        }
+    }
+
+    /// Adds what arrives from one of the lights at each of many surfaces, which also stand in `shadows`.
+    pub(crate) fn lit_all<'a>(
+        &self,
+        light: u16,
+        mut lighted: impl Iterator<Item = &'a Lighted>,
+        shadows: &mut Shadows,
+        lits: &mut Vec<Lit>,
+    ) {
+        let place = usize::from(light);
+        let source = &self.scene.lights[place].source;
+        let (
+            Some(fan),
+            Source::Point {
+                position,
+                intensity,
+            },
+        ) = (&self.fans[place], source)
+        else {
+            let alone = |of: &Lighted| self.lit(light, &of.surface, of.receiver, of.key);
+            lits.extend(lighted.map(alone));
+            return;
+        };
+        let shapes = self.scene.shapes.shapes();
+        let first = lits.len();
+        shadows.towards(*position, *intensity, shapes.len());
+        for surface in 0..shadows.surfaces.len() {
+            let Some(Lighted {
+                surface: from,
+                receiver,
+                ..
+            }) = lighted.next()
+            else {
+                return;
+            };
+            let arriving = shadows.surfaces.at(surface);
+            let lit = unless_blocked(&arriving, *receiver);
+            if lit.is_some() {
+                shadows.add(&arriving, from, fan, surface);
+            }
+            lits.push(lit.unwrap_or_default());
+        }
+        for dark in shadows.dark(shapes) {
+            lits[first + dark] = Lit::default();
         }
     }
 
@@ -155,26 +224,38 @@ fn lit_from(
     receiver: Receiver,
     is_blocked: impl Fn(&Ray, Span) -> bool,
 ) -> Lit {
-    let cos_incidence = arrival.towards.dot(surface.normal);
-    let is_behind = cos_incidence <= 0.0 || arrival.towards.dot(surface.facing) <= 0.0;
-    if is_behind || arrival.illuminance <= 0.0 {
-        return Lit::default();
-    }
-    let glint = receiver.highlight.map_or(0.0, |highlight| {
-        highlight.at(arrival.towards.dot(surface.mirrored))
-    });
-    if !receiver.has_body && glint == 0.0 {
-        return Lit::default();
-    }
-    let shadow_ray = Ray {
-        origin: surface.lifted(),
-        direction: arrival.towards,
+    let arriving = Arriving {
+        arrival: *arrival,
+        cos_facing: arrival.towards.dot(surface.facing),
+        cos_incidence: arrival.towards.dot(surface.normal),
+        cos_mirrored: arrival.towards.dot(surface.mirrored),
+        in_fan: Default::default(),
     };
-    if is_blocked(&shadow_ray, Span::up_to(arrival.distance_m)) {
-        return Lit::default();
+    let lit = unless_blocked(&arriving, receiver);
+    let lit = lit.filter(|_| {
+        let shadow_ray = surface.shadow_ray(arrival);
+        !is_blocked(&shadow_ray, Span::up_to(arrival.distance_m))
+    });
+    lit.unwrap_or_default()
+}
+
+/// What a surface makes of an arrival if nothing blocks it; `None` if there is nothing to block.
+#[inline]
+fn unless_blocked(arriving: &Arriving, receiver: Receiver) -> Option<Lit> {
+    let &Arriving {
+        arrival: Arrival { illuminance, .. },
+        cos_incidence,
+        ..
+    } = arriving;
+    let is_behind = cos_incidence <= 0.0 || arriving.cos_facing <= 0.0;
+    if is_behind || illuminance <= 0.0 {
+        return None;
     }
-    Lit {
-        illuminance: arrival.illuminance * cos_incidence,
-        highlight: arrival.illuminance * glint,
-    }
+    let glint = receiver
+        .highlight
+        .map_or(0.0, |highlight| highlight.at(arriving.cos_mirrored));
+    (receiver.has_body || glint != 0.0).then_some(Lit {
+        illuminance: illuminance * cos_incidence,
+        highlight: illuminance * glint,
+    })
 }

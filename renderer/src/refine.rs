@@ -11,6 +11,8 @@
 //!
 //! Source: Meyer & Liu (1992), sections 3.1 to 3.3.
 
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
 use arrayvec::ArrayVec;
 use protocols::{Channel, PerChannel, RefinementDriver};
 use rayon::prelude::*;
@@ -21,11 +23,14 @@ use crate::confidence::Confidence;
 use crate::halving::LANES;
 use crate::leaves::Leaves;
 use crate::priority::PriorityRule;
-use crate::sampler::{GridPoint, Sampler};
+use crate::sampler::{GridPoint, Sampler, ScreenPoint};
 use crate::screen_tree::{NewLeaf, NewSample, Reach, ScreenTree};
 
 /// Samples taken between two reports of progress: a round is taken in pieces of this many.
-const BATCH: usize = 4096;
+const BATCH: usize = 8192;
+/// Samples that a thread takes side by side: enough to share what they have in common, few enough to stay in
+/// the nearer caches.
+const TOGETHER: usize = 512;
 
 /// How a screen tree is made.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -113,12 +118,15 @@ pub(crate) fn trace_from<S: Sampler>(
     (progress, is_cancelled): (&(dyn Fn(u64, u64) + Sync), &dyn Fn() -> bool),
 ) -> ScreenTree {
     let rays = plan.rays();
-    let mut ray_tree = S::RayTree::default();
-    let first = Probe::new(plan, 0, Leaves::first_point(plan), 0);
-    let first = match taken.first() {
-        Some(taken) => first.recall(*taken),
-        None => first.take(sampler, &mut ray_tree),
+    let sampling = Sampling {
+        sampler,
+        plan,
+        taken,
+        spare: Mutex::default(),
     };
+    let mut first = NewSample::default();
+    let probe = Probe::new(plan, 0, Leaves::first_point(plan), 0);
+    sampling.take(&[(0, probe)], std::iter::once(&mut first));
     let mut tree = ScreenTree::new(&first, plan.capacity(), rays);
     let mut leaves = Leaves::new(plan, &first);
     let mut new = Vec::new();
@@ -133,7 +141,7 @@ pub(crate) fn trace_from<S: Sampler>(
                 return tree;
             }
             let todo = (&leaves, tree.len(), batch);
-            sample_batch(sampler, plan, todo, taken, &mut new);
+            sampling.sample_batch(todo, &mut new);
             rayon::join(|| tree.split(&new), || leaves.split_all(&new));
             progress(tree.len() as u64, rays as u64);
         }
@@ -159,8 +167,8 @@ impl Probe {
         }
     }
 
-    fn take<S: Sampler>(&self, sampler: &S, ray_tree: &mut S::RayTree) -> NewSample {
-        sampler.intersect(self.point.into(), ray_tree);
+    /// The sample of what its ray found.
+    fn shade<S: Sampler>(&self, sampler: &S, ray_tree: &S::RayTree) -> NewSample {
         let values = if Channel::ALL.into_iter().all(|c| self.is_shaded[c]) {
             let values = sampler.shade_all(ray_tree);
             PerChannel::from_fn(|channel| Some(values[channel]))
@@ -182,41 +190,76 @@ impl Probe {
     }
 }
 
-/// Finds the new samples of a batch of leaves, taken on all threads or recalled: each has the number that its
-/// leaf's place in the batch gives it, but they stand in an order in which what is near on the screen is near.
-///
-/// `first` is the number of the first of them.
-fn sample_batch<S: Sampler>(
-    sampler: &S,
-    plan: &TracePlan,
-    (leaves, first, batch): (&Leaves, usize, &[u32]),
-    taken: &[TakenSample],
-    new: &mut Vec<NewLeaf>,
-) {
-    let find = |ray_tree: &mut S::RayTree, (places, new): (&[u32], &mut [NewLeaf])| {
-        let some = places.iter().map(|&place| batch[place as usize]);
-        let splits = leaves.splits(&some.collect::<ArrayVec<u32, LANES>>());
-        for ((new, &place), (split, point)) in new.iter_mut().zip(places).zip(splits) {
-            let number = first + place as usize;
-            let probe = Probe::new(plan, number, point, split.free_half.depth());
-            let sample = match taken.get(number) {
-                Some(taken) => probe.recall(*taken),
-                None => probe.take(sampler, ray_tree),
-            };
-            *new = NewLeaf {
-                number: as_number(number),
-                split,
-                sample,
-            };
+/// What samples are taken with.
+struct Sampling<'a, S: Sampler> {
+    sampler: &'a S,
+    plan: &'a TracePlan,
+    /// The first samples, which are known.
+    taken: &'a [TakenSample],
+    /// Ray trees that no thread uses now.
+    spare: Mutex<Vec<Vec<S::RayTree>>>,
+}
+
+impl<S: Sampler> Sampling<'_, S> {
+    /// Finds the new samples of a batch of leaves, taken on all threads or recalled: each has the number that
+    /// its leaf's place in the batch gives it, but they stand in an order in which what is near on the screen
+    /// is near.
+    ///
+    /// `first` is the number of the first of them.
+    fn sample_batch(
+        &self,
+        (leaves, first, batch): (&Leaves, usize, &[u32]),
+        new: &mut Vec<NewLeaf>,
+    ) {
+        new.resize(batch.len(), NewLeaf::default());
+        leaves
+            .spatial_order(batch)
+            .par_chunks(TOGETHER)
+            .zip(new.par_chunks_mut(TOGETHER))
+            .for_each(|(places, new)| {
+                let mut probes = Vec::with_capacity(places.len());
+                for (places, new) in places.chunks(LANES).zip(new.chunks_mut(LANES)) {
+                    let some = places.iter().map(|&place| batch[place as usize]);
+                    let splits = leaves.splits(&some.collect::<ArrayVec<u32, LANES>>());
+                    for ((new, &place), (split, point)) in new.iter_mut().zip(places).zip(splits) {
+                        let number = first + place as usize;
+                        let depth = split.free_half.depth();
+                        probes.push((number, Probe::new(self.plan, number, point, depth)));
+                        new.number = as_number(number);
+                        new.split = split;
+                    }
+                }
+                self.take(&probes, new.iter_mut().map(|new| &mut new.sample));
+            });
+    }
+
+    /// Takes or recalls the samples of some probes, each with its number.
+    fn take<'n>(
+        &self,
+        probes: &[(usize, Probe)],
+        samples: impl Iterator<Item = &'n mut NewSample>,
+    ) {
+        let unknown = |(number, probe): &(usize, Probe)| {
+            let point = probe.point.into();
+            (*number >= self.taken.len()).then_some(point)
+        };
+        let points: Vec<ScreenPoint> = probes.iter().filter_map(unknown).collect();
+        let mut trees = self.spare().pop().unwrap_or_default();
+        trees.resize_with(trees.len().max(points.len()), S::RayTree::default);
+        self.sampler
+            .intersect_all(&points, &mut trees[..points.len()]);
+        let mut found = trees.iter();
+        for (sample, (number, probe)) in samples.zip(probes) {
+            let taken = self.taken.get(*number).map(|taken| probe.recall(*taken));
+            let new = taken.or_else(|| Some(probe.shade(self.sampler, found.next()?)));
+            *sample = new.unwrap_or_default();
         }
-    };
-    new.resize(batch.len(), NewLeaf::default());
-    leaves
-        .spatial_order(batch)
-        .par_chunks(LANES)
-        .zip(new.par_chunks_mut(LANES))
-        .with_min_len(2)
-        .for_each_init(S::RayTree::default, find);
+        self.spare().push(trees);
+    }
+
+    fn spare(&self) -> MutexGuard<'_, Vec<Vec<S::RayTree>>> {
+        self.spare.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 fn as_number(count: usize) -> u32 {

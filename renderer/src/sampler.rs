@@ -53,6 +53,15 @@ pub trait Sampler: Sync {
     /// Follows the ray through `at` and all rays that it spawns; `tree` is overwritten, its memory reused.
     fn intersect(&self, at: ScreenPoint, tree: &mut Self::RayTree);
 
+    /// What [`Self::intersect`] gives for each of many points, bit for bit; it may cost less than one by one.
+    ///
+    /// There is a tree for each point.
+    fn intersect_all(&self, points: &[ScreenPoint], trees: &mut [Self::RayTree]) {
+        for (&at, tree) in points.iter().zip(trees) {
+            self.intersect(at, tree);
+        }
+    }
+
     /// The tristimulus value of one channel for a ray tree; the same whatever else is shaded.
     fn shade(&self, tree: &Self::RayTree, channel: Channel) -> f32;
 

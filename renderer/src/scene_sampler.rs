@@ -3,32 +3,32 @@
 //! The same point gives the same bits whatever was sampled before, on any thread: what is random depends on
 //! the point alone, and nothing is remembered.
 
+use std::cell::RefCell;
 use std::ops::Range;
 
 use arrayvec::ArrayVec;
 use protocols::{Channel, PerChannel, Quadrature};
 
 use crate::band_shader::BandShader;
-use crate::geometry::{Hit, Ray, Span, Vector, ViewFan};
-use crate::lighting::{HitKey, LIFT_M, Lighting, Receiver, Surface};
+use crate::beam::{Beam, Beams, MAX_HITS};
+use crate::geometry::{Departure, Found, Hierarchy, Hit, Ray, Span, Vector, ViewFan};
+use crate::lighting::{HitKey, Lighted, Lighting, Lit, Receiver, Surface};
 use crate::ray_tree::RayTree;
 use crate::sampler::{Sampler, ScreenPoint};
 use crate::scene::Scene;
-use crate::scene::material::{
-    Body, Material, Mirror, Reflectance, fresnel_reflectance, refraction,
-};
+use crate::scene::material::{Body, Material, Mirror, Reflectance, fresnel_reflectance};
 use crate::shader::{Shader, single};
 use crate::spectra::WavelengthRule;
 use crate::tints::TintIndex;
+use crate::wave::Wave;
 
-/// A ray that counts less than this is not followed: a quarter of an 8-bit step of white.
-const LEAST_SHARE: f64 = 1.0 / 1024.0;
 /// A mirrored ray leaves a surface at an angle of at least this sine.
 const LEAST_HEIGHT: f64 = 1e-3;
-/// No path is longer: the camera's ray and seven more.
-const MAX_DEPTH: u32 = 8;
-/// No ray tree has more hits; the weaker rays of a hit are the ones left out.
-const MAX_HITS: usize = 32;
+
+thread_local! {
+    /// The memory of rays that are followed together on a thread; nothing of it outlasts a call.
+    static WAVE: RefCell<Wave> = RefCell::default();
+}
 
 /// A scene, the wavelengths at which it carries light, and the shape of its picture.
 #[derive(Clone, Debug)]
@@ -41,22 +41,6 @@ pub struct SceneSampler<'scene> {
     view: Option<ViewFan>,
     aspect: f64,
 }
-
-/// A ray that waits to be followed.
-#[derive(Clone, Copy, Debug)]
-struct Beam {
-    ray: Ray,
-    /// The shape whose outside it leaves.
-    outside_of: Option<u32>,
-    /// What part of what it finds reaches the eye, whatever its colour.
-    share: f64,
-    /// The same at the wavelength at which most does.
-    peak: f64,
-    tint: TintIndex,
-    depth: u32,
-}
-
-type Beams = ArrayVec<Beam, MAX_HITS>;
 
 impl<'scene> SceneSampler<'scene> {
     pub(crate) fn new(scene: &'scene Scene, quadrature: Quadrature, size_px: [u32; 2]) -> Self {
@@ -85,6 +69,27 @@ impl<'scene> SceneSampler<'scene> {
         }
     }
 
+    /// The ray of the camera through a point.
+    #[inline]
+    pub(crate) fn camera_beam(&self, at: ScreenPoint) -> Beam {
+        Beam::of_camera(self.scene.camera.ray(at, self.aspect))
+    }
+
+    /// The shapes of the scene.
+    pub(crate) fn shapes(&self) -> &Hierarchy {
+        &self.scene.shapes
+    }
+
+    /// What the camera may see where, if that is known.
+    pub(crate) fn view(&self) -> Option<&ViewFan> {
+        self.view.as_ref()
+    }
+
+    /// The lights of the scene.
+    pub(crate) fn lighting(&self) -> &Lighting<'scene> {
+        &self.lighting
+    }
+
     /// How many wavelengths are computed when a channel is shaded.
     pub fn wavelengths(&self, channel: Channel) -> usize {
         self.shader.wavelengths(channel)
@@ -97,74 +102,122 @@ impl<'scene> SceneSampler<'scene> {
     }
 
     #[inline]
-    fn nearest(&self, beam: &Beam, at: ScreenPoint) -> Option<(u32, Hit)> {
+    fn nearest(&self, beam: &Beam, at: ScreenPoint) -> Found {
         let shapes = &self.scene.shapes;
+        let Departure { ray, outside_of } = &beam.departure;
         match &self.view {
-            Some(view) if beam.depth == 1 => view.nearest((at.x, at.y), &beam.ray, shapes.shapes()),
-            _ => shapes.nearest(&beam.ray, Span::up_to(f64::INFINITY), beam.outside_of),
+            Some(view) if beam.depth == 1 => view.nearest((at.x, at.y), ray, shapes.shapes()),
+            _ => shapes.nearest(ray, Span::up_to(f64::INFINITY), *outside_of),
         }
     }
 
     /// Adds what a ray finds to the tree, and the rays that go on from there to `beams`.
     fn follow(&self, beam: &Beam, at: ScreenPoint, tree: &mut RayTree, beams: &mut Beams) {
-        let scene = self.scene;
-        let Some((index, hit)) = self.nearest(beam, at) else {
+        let Some(hit) = self.nearest(beam, at) else {
             return;
         };
+        if let Some(encounter) = self.meet(beam, hit, at, (tree, beams)) {
+            let Lighted {
+                surface,
+                receiver,
+                key,
+            } = &encounter.lighted;
+            let lit = |light| self.lighting.lit(light, surface, *receiver, *key);
+            self.scatter(&encounter, tree, lit);
+        }
+    }
+
+    /// The material of a shape.
+    #[inline]
+    pub(crate) fn material(&self, shape: u32) -> &Material {
+        let material = usize::from(self.scene.material_of_shape[shape as usize]);
+        &self.scene.materials[material]
+    }
+
+    /// Counts a hit in the tree, adds the rays that go on from there to `beams`, and says what light is to be
+    /// gathered there, if any.
+    #[inline]
+    pub(crate) fn meet(
+        &self,
+        beam: &Beam,
+        (index, hit): (u32, Hit),
+        at: ScreenPoint,
+        (tree, beams): (&mut RayTree, &mut Beams),
+    ) -> Option<Encounter> {
         tree.count_hit();
-        let material = usize::from(scene.material_of_shape[index as usize]);
-        let material = &scene.materials[material];
-        let shape = scene.shapes.shape(index);
-        let place = beam.ray.at(hit.distance_m);
+        let material = self.material(index);
+        let shape = self.scene.shapes.shape(index);
+        let ray = &beam.departure.ray;
+        let place = ray.at(hit.distance_m);
         let outwards = shape.normal(place, hit.part);
-        let is_entering = outwards.dot(beam.ray.direction) <= 0.0;
+        let is_entering = outwards.dot(ray.direction) <= 0.0;
         let smooth = shape.smooth_normal(place, hit.part);
         let outside_of = (is_entering || !shape.is_closed()).then_some(index);
-        let surface = Surface::new(&beam.ray, place, (outwards, smooth), outside_of);
+        let surface = Surface::new(ray, place, (outwards, smooth), outside_of);
         if let (Some(light), true) = (material.emission, is_entering) {
             self.see(beam, light, tree);
         }
-        let body_share = match material.mirror {
-            None => 1.0,
+        let body_share = self.send_on(beam, &surface, (material, is_entering), beams)?;
+        let receiver = Receiver {
+            has_body: material.body.is_some(),
+            highlight: material.highlight,
+            mirrors: material.mirror.is_some(),
+        };
+        if !receiver.has_body && receiver.highlight.is_none() {
+            return None;
+        }
+        Some(Encounter {
+            lighted: Lighted {
+                surface,
+                receiver,
+                key: HitKey {
+                    at,
+                    hit: tree.hits(),
+                },
+            },
+            reflectance: material
+                .body
+                .map(|body| self.reflectance(body, index, place, hit)),
+            share: beam.share,
+            body_share,
+            tint: beam.tint,
+        })
+    }
+
+    /// Sends on the rays that a surface mirrors or lets through, and says what share its body has; `None` for
+    /// glass seen from within.
+    #[inline]
+    fn send_on(
+        &self,
+        beam: &Beam,
+        surface: &Surface,
+        (material, is_entering): (&Material, bool),
+        beams: &mut Beams,
+    ) -> Option<f64> {
+        match material.mirror {
+            None => Some(1.0),
             Some(Mirror::Glass { refractive_index }) => {
                 let relative_index = if is_entering {
                     refractive_index
                 } else {
                     refractive_index.recip()
                 };
-                beam.pass_on(&surface, relative_index, beams);
-                if !is_entering {
-                    return;
-                }
-                0.0
+                beam.pass_on(surface, relative_index, beams);
+                is_entering.then_some(0.0)
             }
             Some(Mirror::Coat { refractive_index }) => {
                 let cos_incidence = surface.mirrored.dot(surface.normal).clamp(0.0, 1.0);
                 let share = fresnel_reflectance(cos_incidence, refractive_index);
                 beam.send(surface.sent_back(), (share, 1.0), beam.tint, beams);
-                1.0 - share
+                Some(1.0 - share)
             }
             Some(Mirror::Metal { reflectance, peak }) => {
                 if let Some(tint) = self.shader.tints().after(beam.tint, reflectance) {
                     beam.send(surface.sent_back(), (1.0, peak), tint, beams);
                 }
-                0.0
+                Some(0.0)
             }
-        };
-        let reflectance = material
-            .body
-            .map(|body| self.reflectance(body, index, place, hit));
-        let hit_key = HitKey {
-            at,
-            hit: tree.hits(),
-        };
-        let ways = Ways {
-            tree,
-            share: beam.share,
-            body_share,
-            tint: beam.tint,
-        };
-        self.scatter(&surface, (material, reflectance), hit_key, ways);
+        }
     }
 
     fn reflectance(&self, body: Body, index: u32, place: Vector, hit: Hit) -> Reflectance {
@@ -204,27 +257,20 @@ impl<'scene> SceneSampler<'scene> {
     }
 
     /// Adds what a surface scatters of each light, and its highlights.
-    fn scatter(
+    #[inline]
+    pub(crate) fn scatter(
         &self,
-        surface: &Surface,
-        (material, reflectance): (&Material, Option<Reflectance>),
-        key: HitKey,
-        ways: Ways<'_>,
+        encounter: &Encounter,
+        tree: &mut RayTree,
+        lit: impl Fn(u16) -> Lit,
     ) {
-        let Ways {
-            tree,
+        let &Encounter {
+            lighted: Lighted { surface, .. },
+            reflectance,
             share,
             body_share,
             tint,
-        } = ways;
-        let receiver = Receiver {
-            has_body: reflectance.is_some(),
-            highlight: material.highlight,
-            mirrors: material.mirror.is_some(),
-        };
-        if !receiver.has_body && receiver.highlight.is_none() {
-            return;
-        }
+        } = encounter;
         let products = match reflectance {
             Some(Reflectance::Table(body)) => self.shader.products(tint, body),
             Some(Reflectance::Sigmoid(_)) | None => None,
@@ -241,15 +287,15 @@ impl<'scene> SceneSampler<'scene> {
         };
         let ambient = self.shader.ambient();
         for light in 0..ambient {
-            let lit = self.lighting.lit(light, surface, receiver, key);
-            if receiver.has_body {
+            let lit = lit(light);
+            if reflectance.is_some() {
                 add(tree, light, lit.illuminance);
             }
             if lit.highlight > 0.0 {
                 highlights.push((light, single(share * lit.highlight)));
             }
         }
-        if let (Some(light), true) = (&self.scene.ambient, receiver.has_body) {
+        if let (Some(light), Some(_)) = (&self.scene.ambient, reflectance) {
             add(tree, ambient, light.arrival(surface.normal));
         }
         if let Some(reflectance) = reflectance {
@@ -261,9 +307,11 @@ impl<'scene> SceneSampler<'scene> {
     }
 }
 
-/// Where the light of a surface goes.
-struct Ways<'tree> {
-    tree: &'tree mut RayTree,
+/// A hit of which light is to be gathered.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Encounter {
+    pub(crate) lighted: Lighted,
+    reflectance: Option<Reflectance>,
     /// Of what the surface sends out, the part that reaches the eye.
     share: f64,
     /// Of what falls on the surface, the part that its body has.
@@ -311,55 +359,13 @@ impl Surface {
     }
 
     /// The mirrored ray, and the shape whose outside it leaves.
-    fn sent_back(&self) -> (Ray, Option<u32>) {
-        let ray = Ray {
-            origin: self.lifted(),
-            direction: self.mirrored,
-        };
-        (ray, self.outside_of)
-    }
-}
-
-impl Beam {
-    /// Sends a ray on that counts for these shares of this one: whatever its colour, and at most.
-    #[inline]
-    fn send(
-        &self,
-        (ray, outside_of): (Ray, Option<u32>),
-        (share, peak): (f64, f64),
-        tint: TintIndex,
-        beams: &mut Beams,
-    ) {
-        let next = Self {
-            ray,
-            outside_of,
-            share: self.share * share,
-            peak: self.peak * share * peak,
-            tint,
-            depth: self.depth + 1,
-        };
-        if next.peak >= LEAST_SHARE && next.depth <= MAX_DEPTH && !beams.is_full() {
-            beams.push(next);
-        }
-    }
-
-    /// Sends on what glass mirrors and what it lets through, the stronger one to be followed first.
-    fn pass_on(&self, surface: &Surface, relative_index: f64, beams: &mut Beams) {
-        let refraction = refraction(self.ray.direction, surface.normal, relative_index);
-        let mirrored = (surface.sent_back(), refraction.reflectance);
-        let through = refraction.direction.map(|direction| {
-            let ray = Ray {
-                origin: surface.place - surface.facing * LIFT_M,
-                direction,
-            };
-            ((ray, None), 1.0 - refraction.reflectance)
-        });
-        let rays = match through {
-            Some(through) if through.1 < mirrored.1 => [Some(through), Some(mirrored)],
-            through => [Some(mirrored), through],
-        };
-        for (sent, share) in rays.into_iter().flatten() {
-            self.send(sent, (share, 1.0), self.tint, beams);
+    pub(crate) fn sent_back(&self) -> Departure {
+        Departure {
+            ray: Ray {
+                origin: self.lifted(),
+                direction: self.mirrored,
+            },
+            outside_of: self.outside_of,
         }
     }
 }
@@ -370,20 +376,17 @@ impl Sampler for SceneSampler<'_> {
     fn intersect(&self, at: ScreenPoint, tree: &mut RayTree) {
         tree.clear();
         let mut beams = Beams::new();
-        beams.push(Beam {
-            ray: self.scene.camera.ray(at, self.aspect),
-            outside_of: None,
-            share: 1.0,
-            peak: 1.0,
-            tint: 0,
-            depth: 1,
-        });
+        beams.push(self.camera_beam(at));
         for _ in 0..MAX_HITS {
             let Some(beam) = beams.pop() else {
                 return;
             };
             self.follow(&beam, at, tree, &mut beams);
         }
+    }
+
+    fn intersect_all(&self, points: &[ScreenPoint], trees: &mut [RayTree]) {
+        WAVE.with_borrow_mut(|wave| wave.intersect(self, points, trees));
     }
 
     fn shade(&self, tree: &RayTree, channel: Channel) -> f32 {

@@ -11,6 +11,7 @@ use std::ops::Range;
 
 use super::box_node::{BoxNode, Child};
 use super::descent::{Descent, Visitor, Walk};
+use super::flock::{Flight, Flock};
 use super::single_ray::rounded;
 use super::split_tree::{SingleBox, SplitTree};
 use super::wide_tree::WideTree;
@@ -44,6 +45,16 @@ pub(crate) struct BoxTree {
     order: Vec<u32>,
     /// How many places the leaves have together.
     places: usize,
+}
+
+/// How a ray comes to a tree.
+enum Approach {
+    /// It may meet what the boxes say.
+    Near(SingleRay),
+    /// It meets nothing.
+    Past,
+    /// It begins so far off that it may meet anything.
+    Unclear,
 }
 
 impl BoxTree {
@@ -118,6 +129,37 @@ impl BoxTree {
     /// Shows the visitor what a ray may meet within the span.
     #[inline]
     pub(crate) fn visit(&self, ray: &Ray, span: Span, visitor: &mut impl Visitor) -> Walk {
+        match self.approach(ray) {
+            Approach::Near(single) => self.descent.visit(&self.nodes, &single, span, visitor),
+            Approach::Past => Walk::On,
+            Approach::Unclear => visitor.visit(0..self.places, None, &mut { span }),
+        }
+    }
+
+    /// Shows `leaf` which of many rays, each with its place among all, may meet what is in which places.
+    pub(crate) fn visit_all<'a>(
+        &self,
+        rays: impl Iterator<Item = (u32, &'a Ray)>,
+        flock: &mut Flock,
+        mut leaf: impl FnMut(Range<usize>, &[u32]),
+    ) {
+        flock.singles.clear();
+        for (place, ray) in rays {
+            match self.approach(ray) {
+                Approach::Near(single) => flock.singles.push((single, place)),
+                Approach::Past => {}
+                Approach::Unclear => leaf(0..self.places, &[place]),
+            }
+        }
+        if !flock.singles.is_empty() && !self.nodes.is_empty() {
+            let nodes = &self.nodes;
+            self.descent.run(Flight { nodes, flock, leaf });
+        }
+    }
+
+    /// How a ray comes to the tree.
+    #[inline]
+    fn approach(&self, ray: &Ray) -> Approach {
         let offset = ray.origin - self.middle;
         let to_middle_m = -offset.dot(ray.direction);
         // Where the ray comes near the sphere around the tree.
@@ -129,31 +171,23 @@ impl BoxTree {
         let origin = offset + ray.direction * start_m;
         let is_near = offset.length_squared() < self.farthest_m * self.farthest_m;
         if !is_near {
-            return self.visit_from_afar(offset, origin, span, visitor);
+            return self.approach_from_afar(offset, origin);
         }
         // A ray that meets the sphere begins in the cylinder around it.
         if origin.length_squared() > 2.01 * self.radius_m * self.radius_m {
-            return Walk::On;
+            return Approach::Past;
         }
-        let single = SingleRay::from(ray, start_m, origin);
-        self.descent.visit(&self.nodes, &single, span, visitor)
+        Approach::Near(SingleRay::from(ray, start_m, origin))
     }
 
     #[cold]
-    fn visit_from_afar(
-        &self,
-        offset: Vector,
-        origin: Vector,
-        span: Span,
-        visitor: &mut impl Visitor,
-    ) -> Walk {
+    fn approach_from_afar(&self, offset: Vector, origin: Vector) -> Approach {
         let rounding_m = 8.0 * f64::EPSILON * offset.length();
         let is_past = origin.length() > 1.5 * self.radius_m + rounding_m;
         if self.nodes.is_empty() || is_past {
-            return Walk::On;
+            return Approach::Past;
         }
-        let mut span = span;
-        visitor.visit(0..self.places, None, &mut span)
+        Approach::Unclear
     }
 }
 

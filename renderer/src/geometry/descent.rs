@@ -40,6 +40,12 @@ pub(crate) struct Descent {
     v3: Option<pulp::x86::V3>,
 }
 
+/// What goes down a tree, whatever the processor.
+pub(super) trait Task {
+    /// Goes down, trying boxes in the given way.
+    fn run(self, test: impl BoxTest) -> Walk;
+}
+
 /// A ray on its way down.
 struct Errand<'a, V> {
     nodes: &'a [BoxNode],
@@ -75,17 +81,22 @@ impl Descent {
         span: Span,
         visitor: &mut V,
     ) -> Walk {
-        let errand = Errand {
+        self.run(Errand {
             nodes,
             ray,
             span,
             visitor,
-        };
+        })
+    }
+
+    /// Does a task in this way.
+    #[inline]
+    pub(super) fn run(self, task: impl Task) -> Walk {
         #[cfg(target_arch = "x86_64")]
         if let Some(v3) = self.v3 {
-            return v3.vectorize(v3::OnV3 { errand, v3 });
+            return v3.vectorize(v3::OnV3 { task, v3 });
         }
-        errand.run(PlainTest)
+        task.run(PlainTest)
     }
 }
 
@@ -93,25 +104,25 @@ impl Descent {
 mod v3 {
     use pulp::x86::V3;
 
-    use super::{Errand, Visitor, Walk};
+    use super::{Task, Walk};
 
-    /// An errand to be compiled for AVX2 and FMA.
-    pub(super) struct OnV3<'a, V> {
-        pub(super) errand: Errand<'a, V>,
+    /// A task to be compiled for AVX2 and FMA.
+    pub(super) struct OnV3<T> {
+        pub(super) task: T,
         pub(super) v3: V3,
     }
 
-    impl<V: Visitor> pulp::NullaryFnOnce for OnV3<'_, V> {
+    impl<T: Task> pulp::NullaryFnOnce for OnV3<T> {
         type Output = Walk;
 
         #[inline(always)]
         fn call(self) -> Walk {
-            self.errand.run(self.v3)
+            self.task.run(self.v3)
         }
     }
 }
 
-impl<V: Visitor> Errand<'_, V> {
+impl<V: Visitor> Task for Errand<'_, V> {
     #[inline(always)]
     fn run(self, test: impl BoxTest) -> Walk {
         let (ray, mut span) = (self.ray, self.span);

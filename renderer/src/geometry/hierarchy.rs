@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use super::descent::{Visitor, Walk};
-use super::{Bounds, BoxTree, Hit, Ray, Shape, SingleRay, Span};
+use super::{Bounds, BoxTree, Flock, Hit, Ray, Shape, ShapeQueues, SingleRay, Span};
 
 /// Trying a shape costs about as much as trying eight boxes.
 const MOST_IN_LEAF: usize = 1;
@@ -78,6 +78,22 @@ impl Hierarchy {
         }
         self.tree.visit(ray, span, &mut search);
         search.best
+    }
+
+    /// Lets each of many rays, given with its place among all, wait for the shapes that it may meet.
+    pub(crate) fn queue<'a>(
+        &self,
+        rays: impl Iterator<Item = (u32, &'a Ray)> + Clone,
+        (flock, queues): (&mut Flock, &mut ShapeQueues),
+    ) {
+        for &index in &self.endless {
+            queues.add_all(index, rays.clone().map(|(place, _)| place));
+        }
+        self.tree.visit_all(rays, flock, |places, rays| {
+            for (shape, _) in &self.sorted[places] {
+                queues.add_all(*shape, rays.iter().copied());
+            }
+        });
     }
 
     /// Whether anything is hit within the span, by a ray as in [`Self::nearest`].

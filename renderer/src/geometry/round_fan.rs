@@ -1,9 +1,17 @@
 //! The six fans round a place: what stands between it and any other place.
+#![expect(
+    clippy::inline_always,
+    reason = "code for a processor's own instructions is compiled for them only where it is inlined"
+)]
 
+use std::ops::ControlFlow;
+
+use pulp::Simd;
 use rayon::prelude::*;
 
 use super::fan::{Fan, NONE};
 use super::fan_filling::Looks;
+use super::lanes::{Lanes, VectorLanes};
 use super::outline::Outline;
 use super::{Pyramid, Ray, Shape, Span, Vector};
 
@@ -52,7 +60,61 @@ impl RoundFan {
         lit: Option<u32>,
         shapes: &[Shape],
     ) -> bool {
-        let Vector { x, y, z } = -ray.direction;
+        let is_hit = |shape: u32| {
+            if shapes[shape as usize].is_hit(ray, span) {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        };
+        self.try_candidates(ray.direction, lit, is_hit).is_break()
+    }
+
+    /// Names the shapes that a ray in this direction, as in [`Self::is_blocked`], may hit, until one of them
+    /// breaks.
+    #[inline]
+    pub(crate) fn try_candidates(
+        &self,
+        direction: Vector,
+        lit: Option<u32>,
+        name: impl FnMut(u32) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let (face, at) = Self::face_from(direction);
+        self.try_candidates_at((face, at), lit, name)
+    }
+
+    /// The same for the directions of a [place](Self::place_of).
+    #[inline]
+    pub(crate) fn try_candidates_at(
+        &self,
+        (face, (s, t)): (usize, (f64, f64)),
+        lit: Option<u32>,
+        mut name: impl FnMut(u32) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let fan = &self.faces[face];
+        let mut list = fan.leaf(s, t);
+        let lit = lit.and_then(|lit| u16::try_from(lit).ok());
+        loop {
+            let mut hiding = lit.map_or(u8::MAX, |lit| list.hiding(lit));
+            while hiding != 0 {
+                let shape = list.shapes[hiding.trailing_zeros() as usize];
+                if shape == NONE {
+                    return ControlFlow::Continue(());
+                }
+                name(u32::from(shape))?;
+                hiding &= hiding - 1;
+            }
+            match fan.after(list) {
+                Some(next) => list = next,
+                None => return ControlFlow::Continue(()),
+            }
+        }
+    }
+
+    /// The face that rays of this direction arrive through, and where.
+    #[inline]
+    fn face_from(direction: Vector) -> (usize, (f64, f64)) {
+        let Vector { x, y, z } = -direction;
         let face = |place: usize, forward: f64| place + usize::from(forward < 0.0);
         let (face, forward, right, up) = if x.abs() >= y.abs() && x.abs() >= z.abs() {
             (face(0, x), x, y, z)
@@ -62,30 +124,38 @@ impl RoundFan {
             (face(4, z), z, x, y)
         };
         let half = 0.5 / forward.abs();
-        let at = (0.5 + right * half, 0.5 - up * half);
-        let lit = lit.and_then(|lit| u16::try_from(lit).ok());
-        let fan = &self.faces[face];
-        let mut leaf = Some(fan.leaf(at.0, at.1));
-        while let Some(list) = leaf {
-            let mut hiding = lit.map_or(u8::MAX, |lit| list.hiding(lit));
-            while hiding != 0 {
-                let shape = list.shapes[hiding.trailing_zeros() as usize];
-                if shape == NONE {
-                    return false;
-                }
-                if shapes[usize::from(shape)].is_hit(ray, span) {
-                    return true;
-                }
-                hiding &= hiding - 1;
-            }
-            leaf = fan.after(list);
-        }
-        false
+        (face, (0.5 + right * half, 0.5 - up * half))
+    }
+
+    /// The same for many directions from the apex: the number of the face, and the place across and down it.
+    #[inline(always)]
+    pub(crate) fn place_of<S: Simd>(
+        simd: S,
+        VectorLanes { x, y, z }: VectorLanes<S>,
+    ) -> (Lanes<S>, Lanes<S>, Lanes<S>) {
+        let number = |number: f64| Lanes::splat(simd, number);
+        let (x_size, y_size, z_size) = (x.abs(), y.abs(), z.abs());
+        let is_x = simd.and_m64s(x_size.is_at_least(y_size), x_size.is_at_least(z_size));
+        let is_y = y_size.is_at_least(z_size);
+        let forward = x.or_else(is_x, y.or_else(is_y, z));
+        let right = y.or_else(is_x, x);
+        let up = z.or_else(is_x, z.or_else(is_y, y));
+        let face = number(0.0).or_else(is_x, number(2.0).or_else(is_y, number(4.0)));
+        let behind = number(1.0).or_else(forward.is_below(number(0.0)), number(0.0));
+        let half = number(0.5) / forward.abs();
+        (
+            face + behind,
+            number(0.5) + right * half,
+            number(0.5) - up * half,
+        )
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use pulp::WithSimd;
+
+    use super::super::lanes::{BLOCK, Block};
     use super::super::random_shapes::{Stream, by_trying_all, many};
     use super::super::{Ground, Rectangle, Sphere};
     use super::*;
@@ -110,6 +180,36 @@ mod tests {
             shadows += u32::from(expected);
         }
         assert!((2_000..18_000).contains(&shadows), "{shadows} shadows");
+    }
+
+    #[test]
+    fn lanes_find_the_faces_that_one_direction_finds() {
+        struct Places<'a>([Block; 3], &'a mut [Block; 3]);
+        impl WithSimd for Places<'_> {
+            type Output = ();
+
+            fn with_simd<S: Simd>(self, simd: S) {
+                for part in 0..BLOCK / S::F64_LANES {
+                    let direction = VectorLanes::load(simd, &self.0, part);
+                    let (x, y, z) = RoundFan::place_of(simd, direction);
+                    VectorLanes { x, y, z }.store(self.1, part);
+                }
+            }
+        }
+        let mut stream = Stream(9);
+        for _ in 0..2_000 {
+            let directions: [Vector; BLOCK] = std::array::from_fn(|_| stream.place(1.0));
+            let (mut of, mut found) = ([[0.0; BLOCK]; 3], [[0.0; BLOCK]; 3]);
+            for (lane, direction) in directions.iter().enumerate() {
+                (of[0][lane], of[1][lane], of[2][lane]) = (direction.x, direction.y, direction.z);
+            }
+            pulp::Arch::new().dispatch(Places(of, &mut found));
+            for (lane, &direction) in directions.iter().enumerate() {
+                let (face, at) = RoundFan::face_from(-direction);
+                let found = (found[0][lane], (found[1][lane], found[2][lane]));
+                assert_eq!(found, (face as f64, at));
+            }
+        }
     }
 
     /// A closed room with stripes before a wall, balls that rest on the ground, and many other shapes.

@@ -23,6 +23,21 @@ impl ViewFan {
         })
     }
 
+    /// Names each shape that a ray from the apex through s and t may meet, as in [`Self::nearest`].
+    #[inline]
+    pub(crate) fn for_each_candidate(&self, (s, t): (f64, f64), mut name: impl FnMut(u32)) {
+        let mut leaf = Some(self.fan.leaf(s, t));
+        while let Some(list) = leaf {
+            for index in list.shapes {
+                if index == NONE {
+                    return;
+                }
+                name(u32::from(index));
+            }
+            leaf = self.fan.after(list);
+        }
+    }
+
     /// The nearest hit of a ray from the apex through s and t, from 0 to 1 across and down the pyramid's
     /// base, and the index of the shape.
     #[inline]
