@@ -35,6 +35,9 @@ pub(crate) enum Command {
     Figures(FiguresArguments),
     /// Run one session in a full-screen window; it resumes where it stopped.
     Run(RunArguments),
+    /// The experimenter's view of a session: `run --experimenter` starts it.
+    #[command(hide = true)]
+    View(ViewArguments),
     /// Close a session that will never be complete: it is kept, but not resumed.
     Close(CloseArguments),
     /// Write down this computer's screen and chair, and say where to sit.
@@ -207,9 +210,22 @@ pub(crate) struct RunArguments {
     /// Show the session on the monitor with this name [default: that of the station]
     #[arg(long, value_name = "NAME")]
     pub(crate) monitor: Option<String>,
+    /// Open a view for the experimenter: trial, time left, ratings so far; pause, stop, notes.
+    #[arg(long)]
+    pub(crate) experimenter: bool,
+    /// Name of the monitor for that view [default: that of the station]
+    #[arg(long, value_name = "NAME", requires = "experimenter")]
+    pub(crate) experimenter_monitor: Option<String>,
     /// Try the session out, this many times faster; marked PILOT on the screen and in the data.
     #[arg(long, value_name = "SPEED", value_parser = pilot_speed)]
     pub(crate) pilot: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ViewArguments {
+    /// The monitor by its name.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) monitor: Option<String>,
 }
 
 #[derive(Debug, Args)]
@@ -233,12 +249,15 @@ pub(crate) struct CloseArguments {
 pub(crate) struct StationArguments {
     /// The protocol whose angle is wanted.
     pub(crate) protocol: PathBuf,
+    /// Measure on the screen itself: size by a bank card, distance, refresh, colour by a meter, the room.
+    #[arg(long, conflicts_with_all = ["width_mm", "width_px", "distance_cm", "icc", "primaries"])]
+    pub(crate) window: bool,
     /// Width of the picture on the screen, without the frame, by a ruler.
-    #[arg(long)]
-    pub(crate) width_mm: f64,
+    #[arg(long, required_unless_present = "window")]
+    pub(crate) width_mm: Option<f64>,
     /// Pixels of that width: the monitor's native resolution.
-    #[arg(long)]
-    pub(crate) width_px: u32,
+    #[arg(long, required_unless_present = "window")]
+    pub(crate) width_px: Option<u32>,
     /// From the subject's eye to the screen [default: where a pixel subtends the protocol's angle]
     #[arg(long)]
     pub(crate) distance_cm: Option<f64>,
@@ -251,6 +270,15 @@ pub(crate) struct StationArguments {
     /// Lights and surround, in words.
     #[arg(long)]
     pub(crate) surround: Option<String>,
+    /// Luminance of what stands behind the screen, in cd/m2.
+    #[arg(long)]
+    pub(crate) background_luminance: Option<f64>,
+    /// Light of the room on the screen, in lux.
+    #[arg(long)]
+    pub(crate) room_lux: Option<f64>,
+    /// Name of the monitor for the experimenter's view.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) experimenter_monitor: Option<String>,
     /// The monitor's ICC profile (primaries and curves) [default: sRGB by declaration]
     #[arg(long, value_name = "FILE", conflicts_with = "primaries")]
     pub(crate) icc: Option<PathBuf>,

@@ -50,6 +50,7 @@ fn run(command: Command, progress: Progress) -> anyhow::Result<ExitCode> {
         Command::Image(arguments) => image::image(&arguments, progress)?,
         Command::Figures(arguments) => render::figures(&arguments)?,
         Command::Run(arguments) => sit::run(&arguments)?,
+        Command::View(arguments) => experiment::experimenters_view(arguments.monitor)?,
         Command::Close(arguments) => sit::close(&arguments)?,
         Command::Station(arguments) => station::measure(&arguments)?,
         Command::Export(arguments) => sit::export(&arguments)?,

@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use experiment::{RunOptions, StationFile, StimulusSet};
+use anyhow::Context as _;
+use experiment::{RunOptions, StationFile, StimulusSet, ViewProgram};
 use protocols::{DataSet, InputError, Observer, Study};
 use renderer::Scene;
 
@@ -54,11 +55,22 @@ fn station_lines(study: &Study, stimuli: &Path, station: &StationFile) -> Vec<St
         .peak_luminance_cd_m2
         .map_or_else(|| "not measured".to_owned(), |peak| format!("{peak} cd/m2"));
     let surround = station.surround.as_deref().unwrap_or("not noted");
+    let number = |value: Option<f64>, unit: &str| {
+        value.map_or_else(
+            || "not measured".to_owned(),
+            |value| format!("{value} {unit}"),
+        )
+    };
+    let room = number(station.room_lux, "lx");
+    let behind = number(station.background_cd_m2, "cd/m2");
     let mut lines = vec![
         format!("station: {advice}"),
         format!("colour: {}", station.color.in_words()),
         format!("peak luminance: {peak} (ITU-R BT.500 advises 70 to 250 in a laboratory)"),
         format!("lights and surround: {surround} (BT.500: dim, a background of 15 % of the peak)"),
+        format!(
+            "room: {room} (ITU-T P.910 advises at most 20); behind the screen: {behind} (P.910: at most 20 % of the peak)"
+        ),
     ];
     let set = StimulusSet::read(study, stimuli).and_then(|set| {
         let display = station.display()?;
@@ -95,11 +107,20 @@ pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<()> {
     let study = Study::read(&arguments.protocol)?;
     let station = experiment::station_for(&study, arguments.station.as_deref())?;
     let measured = station.as_ref().and_then(|station| station.monitor.clone());
+    let view = if arguments.experimenter {
+        Some(view(
+            arguments.experimenter_monitor.clone(),
+            station.as_ref(),
+        )?)
+    } else {
+        None
+    };
     let options = RunOptions {
         subject: arguments.subject.clone(),
         stimuli_dir: arguments.stimuli.of(&study),
         data_dir: arguments.data.of(&study),
         pilot: arguments.pilot,
+        view,
         session: arguments.session,
         monitor: arguments.monitor.clone().or(measured),
         station,
@@ -109,6 +130,17 @@ pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// This program once more, as the experimenter's view on the monitor named, or on the station's.
+fn view(named: Option<String>, station: Option<&StationFile>) -> anyhow::Result<ViewProgram> {
+    let program = std::env::current_exe().context("cannot find this program's own file")?;
+    let noted = station.and_then(|station| station.experimenter_monitor.clone());
+    let mut arguments = vec!["view".to_owned()];
+    if let Some(monitor) = named.or(noted) {
+        arguments.extend(["--monitor".to_owned(), monitor]);
+    }
+    Ok(ViewProgram { program, arguments })
+}
+
 pub(crate) fn close(arguments: &CloseArguments) -> anyhow::Result<()> {
     let study = Study::read(&arguments.protocol)?;
     let options = RunOptions {
@@ -116,6 +148,7 @@ pub(crate) fn close(arguments: &CloseArguments) -> anyhow::Result<()> {
         stimuli_dir: study.default_stimuli_dir(),
         data_dir: arguments.data.of(&study),
         pilot: None,
+        view: None,
         session: arguments.session,
         monitor: None,
         station: None,

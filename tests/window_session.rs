@@ -3,6 +3,10 @@
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 mod display;
+#[path = "window_session/experimenters_view.rs"]
+mod experimenters_view;
+#[path = "window_session/station_window.rs"]
+mod station_window;
 
 use std::fs::{self, OpenOptions};
 use std::io::Write as _;

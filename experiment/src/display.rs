@@ -18,6 +18,8 @@ use protocols::srgb::{is_out_of_srgb_gamut, srgb_decoded, srgb_encode};
 /// The white of the stimuli: D65, Y = 1.
 const WHITE_XYZ: [f64; 3] = [0.3127 / 0.3290, 1.0, (1.0 - 0.3127 - 0.3290) / 0.3290];
 
+const XYZ_FROM_LINEAR_SRGB: Matrix3 = matrix3::inverse(&LINEAR_SRGB_FROM_XYZ);
+
 /// How colours get to one display.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Display {
@@ -32,6 +34,8 @@ pub enum Display {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Characterised {
     rgb_from_ac1c2: Matrix3,
+    /// With the display's own white at Y = 1.
+    xyz_from_rgb: Matrix3,
     curves: [Steps; 3],
     /// The luminance of the stimuli's white, as a part of that of the display's own.
     white_luminance: f64,
@@ -42,13 +46,17 @@ pub struct Characterised {
 struct Steps {
     /// Between each code and the next: 255 of them, rising.
     limits: Vec<f64>,
+    /// At each code.
+    lights: Vec<f64>,
 }
 
 impl Steps {
     fn of(decoded: impl Fn(f64) -> f64) -> Self {
         let limits = (0..255).map(|code| decoded((f64::from(code) + 0.5) / 255.0));
+        let lights = (0..=255).map(|code| decoded(f64::from(code) / 255.0));
         Self {
             limits: limits.collect(),
+            lights: lights.collect(),
         }
     }
 
@@ -79,6 +87,7 @@ impl Characterised {
         let full: f64 = xyz_from_rgb[1].iter().sum();
         Self {
             rgb_from_ac1c2: matrix3::product(&scaled, &XYZ_FROM_AC1C2),
+            xyz_from_rgb: xyz_from_rgb.map(|row| row.map(|entry| entry / full)),
             curves: decoded.map(Steps::of),
             white_luminance: 1.0 / most / full,
         }
@@ -113,6 +122,26 @@ impl Display {
         }
     }
 
+    /// The tristimulus values that codes should give, with the display's own white at Y = 1 and no light at black.
+    pub fn xyz(&self, codes: [u8; 3]) -> [f64; 3] {
+        match self {
+            Self::Srgb => {
+                let linear = codes.map(|code| srgb_decoded(f64::from(code) / 255.0));
+                matrix3::times(&XYZ_FROM_LINEAR_SRGB, linear)
+            }
+            Self::Characterised(display) => {
+                let light = |primary: usize| {
+                    let lights = &display.curves[primary].lights;
+                    lights
+                        .get(usize::from(codes[primary]))
+                        .copied()
+                        .unwrap_or(1.0)
+                };
+                matrix3::times(&display.xyz_from_rgb, [light(0), light(1), light(2)])
+            }
+        }
+    }
+
     /// The luminance of the stimuli's white as a part of the display's own, where that is known.
     pub fn white_luminance(&self) -> Option<f64> {
         match self {
@@ -124,7 +153,6 @@ impl Display {
 
 /// The opponent channels of 8-bit sRGB.
 pub(crate) fn ac1c2_of_srgb(rgb: [u8; 3]) -> PerChannel<f64> {
-    const XYZ_FROM_LINEAR_SRGB: Matrix3 = matrix3::inverse(&LINEAR_SRGB_FROM_XYZ);
     let linear = rgb.map(|code| srgb_decoded(f64::from(code) / 255.0));
     ac1c2_from_xyz(matrix3::times(&XYZ_FROM_LINEAR_SRGB, linear))
 }
@@ -150,6 +178,30 @@ mod tests {
         }
         assert!((display.white_luminance().unwrap() - 1.0).abs() < 1e-9);
         assert_eq!(display.grey(128), [128; 3]);
+    }
+
+    /// A meter on an sRGB display: white is D65, red (.64, .33) has Y = .2126, code 128 gives .2159 of the light.
+    #[test]
+    fn what_a_meter_should_read_is_what_the_standard_says() {
+        for display in [Display::Srgb, srgb_by_its_numbers()] {
+            for (codes, x, y, luminance) in [
+                ([255, 255, 255], 0.3127, 0.3290, 1.0),
+                ([255, 0, 0], 0.64, 0.33, 0.2126),
+                ([0, 255, 0], 0.30, 0.60, 0.7152),
+                ([0, 0, 255], 0.15, 0.06, 0.0722),
+                ([128, 128, 128], 0.3127, 0.3290, 0.2159),
+            ] {
+                let xyz = display.xyz(codes);
+                let sum: f64 = xyz.iter().sum();
+                let found = [xyz[0] / sum, xyz[1] / sum, xyz[1]];
+                for (found, expected) in found.into_iter().zip([x, y, luminance]) {
+                    assert!(
+                        (found - expected).abs() < 2e-4,
+                        "{codes:?}: {found} {expected}"
+                    );
+                }
+            }
+        }
     }
 
     #[test]

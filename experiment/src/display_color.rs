@@ -14,6 +14,7 @@ use protocols::srgb::srgb_decoded;
 use protocols::{InputError, ReadError, Sha256Digest};
 use serde::{Deserialize, Serialize};
 
+use crate::Calibration;
 use crate::display::{Characterised, Display};
 
 /// What the display's colours are taken for.
@@ -29,6 +30,9 @@ pub enum DisplayColor {
     /// By the monitor's ICC profile.
     #[serde(rename = "icc")]
     Icc(ProfileFile),
+    /// By a colorimeter, patch by patch.
+    #[serde(rename = "calibrated")]
+    Calibrated(Calibration),
 }
 
 /// Chromaticities x, y (CIE 1931) as a colorimeter reads them.
@@ -91,6 +95,13 @@ impl DisplayColor {
         match self {
             Self::Srgb => Ok(Display::Srgb),
             Self::Measured(measured) => Ok(measured.display(station)?),
+            Self::Calibrated(calibration) => match calibration.fit() {
+                Ok(fit) => Ok(Display::Characterised(Box::new(fit.display()))),
+                Err(found) => Err(InputError::new(station, found, "readings of one display")
+                    .at("field color.calibrated.readings")
+                    .remedy("read the patches again: acuity station P --window")
+                    .into()),
+            },
             Self::Icc(profile) => {
                 let bytes = read(&profile.file)?;
                 let found = Sha256Digest::of(&bytes);
@@ -119,6 +130,10 @@ impl DisplayColor {
                 format!("measured, white ({x}, {y}), {curve}")
             }
             Self::Icc(profile) => format!("ICC profile {}", profile.file.display()),
+            Self::Calibrated(calibration) => match calibration.fit() {
+                Ok(fit) => fit.in_words(),
+                Err(fault) => format!("readings that fit no display: {fault}"),
+            },
         }
     }
 }

@@ -61,6 +61,16 @@ pub enum ExperimentError {
         /// The width that was measured.
         measured_px: u32,
     },
+    /// The monitor is another than the one that was measured.
+    #[error(
+        "found the monitor \"{found}\", expected \"{measured}\", which the station was measured on; leave --monitor out, or measure this one: acuity station P --window --monitor {found}"
+    )]
+    OtherMonitor {
+        /// The monitor that the window is on.
+        found: String,
+        /// The one that was measured.
+        measured: String,
+    },
     /// There is no monitor with this name.
     #[error(
         "found the monitors {all}, expected one named \"{wanted}\"; name one of those with --monitor"

@@ -76,6 +76,11 @@ impl FrameClock {
         quantile(recent_s, 0.5)
     }
 
+    /// How many frames with a test image came late.
+    pub fn missed(&self) -> u32 {
+        self.missed
+    }
+
     /// What the frames of all exposures were like, if there were any.
     pub fn summary(&self) -> Option<FrameSummary> {
         let intervals_s = &self.exposure_intervals_s;

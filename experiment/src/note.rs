@@ -36,6 +36,22 @@ pub enum Noted {
     FocusLost,
     /// The window has the keyboard again.
     FocusRegained,
+    /// What is watched of screensaver and sleep.
+    ScreenWatch,
+    /// The screensaver covers the screen.
+    ScreensaverOn,
+    /// It does no longer.
+    ScreensaverOff,
+    /// The display sleeps.
+    DisplayAsleep,
+    /// It does no longer.
+    DisplayAwake,
+    /// Words of the experimenter.
+    Words,
+    /// The experimenter's view was opened, or is gone.
+    View,
+    /// The experimenter let the session rest, go on or stop; the detail says which.
+    Experimenter,
     /// A rating was put on disk; the detail says how long that took.
     RatingOnDisk,
     /// The frames before the first screen; the detail says what they were like.
@@ -60,6 +76,14 @@ impl Noted {
             Self::StrayClick => "stray_click",
             Self::FocusLost => "focus_lost",
             Self::FocusRegained => "focus_regained",
+            Self::ScreenWatch => "screen_watch",
+            Self::ScreensaverOn => "screensaver_on",
+            Self::ScreensaverOff => "screensaver_off",
+            Self::DisplayAsleep => "display_asleep",
+            Self::DisplayAwake => "display_awake",
+            Self::Words => "note",
+            Self::View => "experimenters_view",
+            Self::Experimenter => "experimenter",
             Self::RatingOnDisk => "rating_on_disk",
             Self::RefreshMeasured => "refresh_measured",
             Self::PixelsCompared => "pixels_compared",

@@ -20,7 +20,7 @@ use crate::{ExperimentError, Trial};
 pub(crate) struct RatingsLog {
     file: File,
     path: PathBuf,
-    rated: usize,
+    ratings: Vec<i32>,
 }
 
 impl Drop for RatingsLog {
@@ -71,7 +71,7 @@ impl RatingsLog {
         Ok(Self {
             file,
             path,
-            rated: found.rows.len(),
+            ratings: found.rows.iter().map(|row| row.rating).collect(),
         })
     }
 
@@ -83,7 +83,12 @@ impl RatingsLog {
 
     /// How many trials are on disk.
     pub(crate) fn rated(&self) -> usize {
-        self.rated
+        self.ratings.len()
+    }
+
+    /// The ratings on disk, in the order of the trials.
+    pub(crate) fn ratings(&self) -> &[i32] {
+        &self.ratings
     }
 
     /// The file.
@@ -97,7 +102,7 @@ impl RatingsLog {
             .write_all(row.to_line().as_bytes())
             .and_then(|()| self.file.sync_data())
             .map_err(ExperimentError::io("write", &self.path))?;
-        self.rated += 1;
+        self.ratings.push(row.rating);
         Ok(())
     }
 

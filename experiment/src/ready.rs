@@ -5,7 +5,7 @@ use std::path::Path;
 
 use protocols::{DataSet, Observer, Study};
 
-use crate::{data_set_files, stimulus_set};
+use crate::{data_set_files, script_fonts, stimulus_set};
 
 /// What is not ready for a session of `study`: one line for each thing; empty when all is.
 ///
@@ -13,6 +13,7 @@ use crate::{data_set_files, stimulus_set};
 pub fn check_ready(study: &Study, stimuli_dir: &Path, data_dir: &Path) -> Vec<String> {
     let mut faults = stimulus_set::faults(study, stimuli_dir);
     faults.extend(order_fault(study));
+    faults.extend(script_fonts::text_faults(study));
     faults.extend(data_fault(study, data_dir));
     faults.extend(display_fault());
     faults

@@ -58,7 +58,7 @@ impl Refresh {
     }
 
     /// What the data and the experimenter should know.
-    pub fn in_words(&self) -> String {
+    pub fn in_words(self) -> String {
         let lock = match self.is_locked {
             Some(true) => "locked to the display's refresh",
             Some(false) => "NOT locked to the display's refresh",

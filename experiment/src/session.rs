@@ -24,6 +24,7 @@
 //! Not here: clocks, files, random numbers, pictures.
 
 mod hands;
+mod orders;
 mod rest;
 
 use crate::button::{Button, Key};

@@ -95,6 +95,17 @@ pub(crate) struct Sitting {
     /// How often the window lost the keyboard while a trial ran.
     #[serde(default)]
     pub(crate) focus_losses: u32,
+    /// What the experimenter noted.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) notes: Vec<Words>,
+}
+
+/// A note of the experimenter.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Words {
+    pub(crate) at: String,
+    pub(crate) trial_id: usize,
+    pub(crate) text: String,
 }
 
 /// The computer and its screen.

@@ -167,6 +167,7 @@ impl Simulation<'_> {
             station: None,
             frames: None,
             focus_losses: 0,
+            notes: Vec::new(),
         });
         sidecar.write(&DataSet::sidecar_path(&path))?;
         Ok(session.answers.len())

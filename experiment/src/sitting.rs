@@ -12,11 +12,11 @@ use crate::intake::PixelAngle;
 use crate::intake_files::IntakeFiles;
 use crate::rating_row::{rating_row, utc};
 use crate::ratings_log::RatingsLog;
-use crate::sidecar::{self, Closed, SessionKey, Sidecar, Station, ending_word};
+use crate::sidecar::{self, Closed, SessionKey, Sidecar, Station, Words, ending_word};
 use crate::timing_log::TimingLog;
 use crate::{
-    Ending, Event, ExperimentError, Finished, Intake, Noted, Rules, ScreeningScore, Session,
-    StationFile, StimulusSet, data_set_files, trials,
+    Ending, Event, ExperimentError, Finished, Intake, Noted, Order, Refresh, Rules, Screen,
+    ScreeningScore, Session, StationFile, StimulusSet, data_set_files, trials,
 };
 
 /// Which session is run, and on what.
@@ -36,6 +36,17 @@ pub struct RunOptions {
     pub station: Option<StationFile>,
     /// How many times shorter the times are, to try the session out; `None` for a session that counts.
     pub pilot: Option<f64>,
+    /// Opens the experimenter's view, if there shall be one.
+    pub view: Option<ViewProgram>,
+}
+
+/// The program that shows the experimenter's view: it calls [`crate::experimenters_view`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ViewProgram {
+    /// The file.
+    pub program: PathBuf,
+    /// What it is called with.
+    pub arguments: Vec<String>,
 }
 
 impl RunOptions {
@@ -108,6 +119,8 @@ pub(crate) struct Sitting {
     pixel_angle: PixelAngle,
     clock_zero: Timestamp,
     is_begun: bool,
+    /// Whether there are notes that are not on disk.
+    has_new_words: bool,
 }
 
 impl Drop for Sitting {
@@ -167,6 +180,7 @@ impl Sitting {
             pixel_angle: pixel_angle(study, options),
             clock_zero,
             is_begun: false,
+            has_new_words: false,
         })
     }
 
@@ -181,6 +195,7 @@ impl Sitting {
             station: Some(station),
             frames: None,
             focus_losses: 0,
+            notes: Vec::new(),
         });
         self.timing.begin(self.sidecar.sittings.len());
         self.sidecar.write(&self.sidecar_path)
@@ -252,6 +267,47 @@ impl Sitting {
             sitting.frames = self.session.frame_clock().summary().map(Into::into);
         }
         self.sidecar.write(&self.sidecar_path)
+    }
+
+    /// Takes an order of the experimenter; a note goes into the sidecar too.
+    pub(crate) fn order(&mut self, order: &Order, at_s: f64) {
+        self.session.order(order, at_s);
+        if let (Order::Note(words), Some(sitting)) = (order, self.sidecar.sittings.last_mut()) {
+            sitting.notes.push(Words {
+                at: utc(self.clock_zero, at_s),
+                trial_id: self.session.rated() + 1,
+                text: words.clone(),
+            });
+            self.has_new_words = true;
+        }
+    }
+
+    /// Puts new notes on disk, unless an image stands or is awaited: no frame waits for the disk.
+    pub(crate) fn keep_words(&mut self) -> Result<(), ExperimentError> {
+        let screen = self.session.screen();
+        let is_timed = screen == Screen::Blank || screen.picture().is_some();
+        if !self.has_new_words || is_timed {
+            return Ok(());
+        }
+        self.has_new_words = false;
+        self.log_timing()?;
+        self.sidecar.write(&self.sidecar_path)
+    }
+
+    /// What the frames before the first screen were like, once they are timed.
+    pub(crate) fn refresh_in_words(&self) -> String {
+        let station = self
+            .sidecar
+            .sittings
+            .last()
+            .and_then(|sitting| sitting.station.as_ref());
+        let refresh = station.and_then(|station| station.refresh);
+        refresh.map_or_else(String::new, Refresh::in_words)
+    }
+
+    /// The ratings on disk, in the order of the trials.
+    pub(crate) fn ratings(&self) -> &[i32] {
+        self.log.ratings()
     }
 
     /// Puts frames and events so far into their tables.

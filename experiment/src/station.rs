@@ -3,6 +3,7 @@
 //! It belongs to a computer, not to a study, so it stands in a file of its own, which every session copies into
 //! its sidecar. A pixel of pitch *p* seen from the distance *d* subtends the angle *a* with `p = d tan(a)`.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -30,9 +31,31 @@ pub struct StationFile {
     /// Lights and surround, in words.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surround: Option<String>,
+    /// The luminance of what stands behind the screen, if it was measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub background_cd_m2: Option<f64>,
+    /// The light of the room on the screen, if it was measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub room_lux: Option<f64>,
+    /// The monitor of the experimenter's view, by its name.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub experimenter_monitor: Option<String>,
     /// What the display's colours are taken for.
     #[serde(default)]
     pub color: DisplayColor,
+    /// Every monitor of this computer that was measured, by its name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub screens: BTreeMap<String, ScreenSize>,
+}
+
+/// The size of one monitor.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScreenSize {
+    /// The width of the picture, without the frame.
+    pub width_mm: f64,
+    /// The pixels of that width.
+    pub width_px: u32,
 }
 
 impl StationFile {
@@ -91,7 +114,19 @@ impl StationFile {
         range("width_px", f64::from(self.width_px), 320.0, 32_768.0)?;
         range("distance_cm", self.distance_cm, 10.0, 1000.0)?;
         let peak = self.peak_luminance_cd_m2.unwrap_or(100.0);
-        range("peak_luminance_cd_m2", peak, 1.0, 10_000.0)
+        range("peak_luminance_cd_m2", peak, 1.0, 10_000.0)?;
+        let background = self.background_cd_m2.unwrap_or(0.0);
+        range("background_cd_m2", background, 0.0, 10_000.0)?;
+        range("room_lux", self.room_lux.unwrap_or(0.0), 0.0, 100_000.0)?;
+        for (name, screen) in &self.screens {
+            range(
+                &format!("screens.{name}.width_mm"),
+                screen.width_mm,
+                50.0,
+                5000.0,
+            )?;
+        }
+        Ok(())
     }
 
     /// How colours get to the station's display.
@@ -120,6 +155,10 @@ impl StationFile {
     ///     color: experiment::DisplayColor::Srgb,
     ///     peak_luminance_cd_m2: None,
     ///     surround: None,
+    ///     background_cd_m2: None,
+    ///     room_lux: None,
+    ///     experimenter_monitor: None,
+    ///     screens: std::collections::BTreeMap::new(),
     /// };
     /// assert!((station.degrees_per_pixel() - 0.019).abs() < 1e-12);
     /// ```
@@ -205,6 +244,16 @@ mod tests {
             color: DisplayColor::Srgb,
             peak_luminance_cd_m2: Some(120.0),
             surround: Some("dim, 20 lx".to_owned()),
+            background_cd_m2: Some(18.0),
+            room_lux: Some(20.0),
+            experimenter_monitor: Some("DP-2".to_owned()),
+            screens: BTreeMap::from([(
+                "DP-1".to_owned(),
+                ScreenSize {
+                    width_mm: 527.04,
+                    width_px: 1920,
+                },
+            )]),
         }
     }
 
@@ -229,6 +278,12 @@ mod tests {
         for (good, bad, named) in [
             ("width_mm = 527.04", "width_mm = 5.0", "width_mm"),
             ("width_mm = 527.04", "width_mm = nan", "width_mm"),
+            ("room_lux = 20.0", "room_lux = -1.0", "room_lux"),
+            (
+                "[screens.DP-1]\nwidth_mm = 527.04",
+                "[screens.DP-1]\nwidth_mm = 1.0",
+                "screens.DP-1.width_mm",
+            ),
             ("width_px = 1920", "", "width_px"),
             (
                 "distance_cm = 82.8",

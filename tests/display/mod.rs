@@ -111,6 +111,26 @@ impl Display {
         [value("X="), value("Y=")]
     }
 
+    /// Waits for the window with this title, and gives it the upper left corner and this size.
+    pub(crate) fn place(&self, title: &str, [width, height]: [usize; 2]) {
+        let [width, height] = [width.to_string(), height.to_string()];
+        self.xdotool(&["search", "--sync", "--name", title, "windowmove", "0", "0"]);
+        self.xdotool(&["search", "--name", title, "windowsize", &width, &height]);
+    }
+
+    /// Clicks at a place in the window with this title, which is brought to the front.
+    pub(crate) fn click_in(&self, title: &str, [x, y]: [usize; 2]) {
+        let [x, y] = [x.to_string(), y.to_string()];
+        self.xdotool(&["search", "--name", title, "windowactivate", "--sync"]);
+        let window = ["search", "--name", title, "mousemove", "--window", "%1"];
+        self.xdotool(&[&window[..], &[&x, &y, "click", "1"]].concat());
+    }
+
+    /// Types words where the keyboard is.
+    pub(crate) fn write(&self, words: &str) {
+        self.xdotool(&["type", words]);
+    }
+
     fn xdotool(&self, arguments: &[&str]) {
         let status = self.command("xdotool").args(arguments).status().unwrap();
         assert!(status.success());

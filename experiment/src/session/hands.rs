@@ -38,7 +38,7 @@ impl Session {
         }
     }
 
-    fn push(&mut self, button: Button, at_s: f64) {
+    pub(super) fn push(&mut self, button: Button, at_s: f64) {
         if let Some(asking) = self.asking {
             match (asking.screen, button) {
                 (_, Button::Continue) => {
@@ -92,7 +92,7 @@ impl Session {
         }
     }
 
-    fn wait(&mut self, screen: Screen, event: Noted, at_s: f64) {
+    pub(super) fn wait(&mut self, screen: Screen, event: Noted, at_s: f64) {
         if matches!(
             self.state,
             State::Saving(_) | State::Leaving(_) | State::Over(_)

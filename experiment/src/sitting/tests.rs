@@ -45,6 +45,7 @@ impl Place {
                 stimuli_dir: folder.join("stimuli"),
                 data_dir: folder.join("data"),
                 pilot: None,
+                view: None,
                 session: 1,
                 monitor: None,
                 station: None,

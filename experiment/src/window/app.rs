@@ -14,6 +14,8 @@ use super::input;
 use super::intake_page::{IntakePage, Looks};
 use super::monitor::Monitor;
 use super::paint::{Brush, Pictures};
+use super::screen_watch::ScreenWatch;
+use super::view::ViewLink;
 use crate::sitting::Sitting;
 use crate::{
     Display, Event, ExperimentError, Key, Noted, Screen, Session, SessionEnd, StationFile, Step,
@@ -64,8 +66,47 @@ impl Focus {
     }
 }
 
+/// What goes on beside the subject's screen.
+pub(crate) struct Aside {
+    /// The experimenter's view, if there is one.
+    pub(crate) view: Option<ViewLink>,
+    pub(crate) watch: ScreenWatch,
+    /// Until when the subject's window asks for the keyboard: the view took it when it opened.
+    pub(crate) asks_focus_until_s: f64,
+}
+
+/// How long a window that has just opened may still take the keyboard.
+const OPENING_S: f64 = 2.0;
+
+impl Aside {
+    /// Hears the experimenter and the X server.
+    fn hear(&mut self, context: &egui::Context, sitting: &mut Sitting, now_s: f64) {
+        for (event, detail) in self.watch.take() {
+            sitting.session.note(event, now_s, detail);
+        }
+        let view = self.view.as_mut();
+        if view.is_some_and(|view| view.pass_on(sitting, now_s)) {
+            self.asks_focus_until_s = now_s + OPENING_S;
+        }
+        if now_s < self.asks_focus_until_s {
+            if !context.input(|input| input.focused) {
+                context.send_viewport_cmd(ViewportCommand::Focus);
+            }
+            context.request_repaint();
+        }
+    }
+
+    /// Tells the experimenter what there is to see.
+    fn tell(&mut self, sitting: &Sitting, before: Option<&'static str>, clock: Clock) {
+        if let Some(view) = &mut self.view {
+            view.tell(sitting, before, clock);
+        }
+    }
+}
+
 /// A session in its window.
 pub(crate) struct SessionApp {
+    aside: Aside,
     sitting: Sitting,
     show: Show,
     clock: Clock,
@@ -77,8 +118,15 @@ pub(crate) struct SessionApp {
 }
 
 impl SessionApp {
-    pub(crate) fn new(sitting: Sitting, show: Show, clock: Clock, outcome: Outcome) -> Self {
+    pub(crate) fn new(
+        sitting: Sitting,
+        show: Show,
+        aside: Aside,
+        clock: Clock,
+        outcome: Outcome,
+    ) -> Self {
         Self {
+            aside,
             sitting,
             show,
             clock,
@@ -108,12 +156,15 @@ impl SessionApp {
             pointer: context.input(|input| input.pointer.latest_pos()),
         };
         brush.background();
+        self.aside.hear(context, &mut self.sitting, now_s);
         if !matches!(self.before, Before::Nothing) {
             context.request_repaint();
             context.set_cursor_icon(CursorIcon::None);
             let (sitting, show) = (&mut self.sitting, &self.show);
             let frame = (&self.monitor, sizes, now_s);
             if !self.before.frame(sitting, show, &brush, frame)? {
+                let words = "waits: the window is sized and its frames are timed";
+                self.aside.tell(&self.sitting, Some(words), self.clock);
                 return Ok(None);
             }
         }
@@ -143,18 +194,26 @@ impl SessionApp {
                 .finish(ending, self.focus.losses, now_s)
                 .map(Some);
         }
-        brush.screen(session, &self.show.pictures);
-        if let Some(speed) = self.show.pilot {
-            brush.pilot(speed);
-        }
-        brush.photodiode(session.screen());
-        if matches!(session.screen(), Screen::Blank | Screen::Exposure(..)) {
-            context.set_cursor_icon(CursorIcon::None);
-        }
-        if session.needs_frames() {
-            context.request_repaint();
-        }
+        draw(&brush, session, &self.show);
+        self.sitting.keep_words()?;
+        self.aside.tell(&self.sitting, None, self.clock);
         Ok(None)
+    }
+}
+
+/// Draws the present screen, and asks for the next frame if one must follow.
+fn draw(brush: &Brush<'_>, session: &Session, show: &Show) {
+    let context = brush.painter.ctx();
+    brush.screen(session, &show.pictures);
+    if let Some(speed) = show.pilot {
+        brush.pilot(speed);
+    }
+    brush.photodiode(session.screen());
+    if matches!(session.screen(), Screen::Blank | Screen::Exposure(..)) {
+        context.set_cursor_icon(CursorIcon::None);
+    }
+    if session.needs_frames() {
+        context.request_repaint();
     }
 }
 
@@ -175,6 +234,11 @@ impl SessionApp {
         if context.input(|input| input.viewport().close_requested()) {
             context.send_viewport_cmd(ViewportCommand::CancelClose);
         }
+        if self.sitting.session.ending().is_some() {
+            return self.sitting.leave(now_s).map(Some);
+        }
+        let words = "reads and answers what comes before the first trial";
+        self.aside.tell(&self.sitting, Some(words), self.clock);
         let looks = Looks {
             plan: &self.show.plan,
             geometry,

@@ -11,7 +11,7 @@ use crate::sitting::Sitting;
 use crate::{ExperimentError, Noted, Refresh, StationFile};
 
 /// How many intervals between frames are measured before the first screen, and in a trial run.
-const MEASURED_FRAMES: usize = 300;
+pub(super) const MEASURED_FRAMES: usize = 300;
 const MEASURED_FRAMES_OF_PILOT: usize = 20;
 
 /// What comes before the first screen, one after the other.
@@ -52,7 +52,7 @@ impl Before {
                 let is_there = monitor.is_wanted(show.monitor.as_deref(), context)?;
                 if is_there && gate.is_open(context, sizes, now_s)? {
                     check_fit(needed_px(&show.plan, show.pictures.image_px), sizes)?;
-                    check_station(show.station.as_ref(), sizes)?;
+                    check_station(show.station.as_ref(), monitor, sizes)?;
                     *self = Self::Timing { began: vec![now_s] };
                 }
             }
@@ -103,7 +103,20 @@ impl Before {
 }
 
 /// Whether this is the screen that was measured, at its own resolution.
-fn check_station(station: Option<&StationFile>, sizes: Sizes) -> Result<(), ExperimentError> {
+fn check_station(
+    station: Option<&StationFile>,
+    monitor: &Monitor,
+    sizes: Sizes,
+) -> Result<(), ExperimentError> {
+    let measured = station.and_then(|station| station.monitor.as_ref());
+    if let (Some(measured), Some(found)) = (measured, &monitor.name)
+        && measured != found
+    {
+        return Err(ExperimentError::OtherMonitor {
+            found: found.clone(),
+            measured: measured.clone(),
+        });
+    }
     match station {
         Some(station) if station.width_px != sizes.monitor_px[0] => {
             Err(ExperimentError::OtherScreen {

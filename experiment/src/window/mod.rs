@@ -3,6 +3,7 @@
 mod app;
 mod before;
 mod clock;
+mod desk;
 mod gate;
 mod geometry;
 mod input;
@@ -10,6 +11,9 @@ mod intake_page;
 mod monitor;
 mod paint;
 mod proof;
+mod screen_watch;
+mod station;
+mod view;
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -20,9 +24,14 @@ use protocols::Study;
 
 use crate::{Display, ExperimentError, RunOptions, SessionEnd, StationFile, StimulusSet};
 
-use app::{SessionApp, Show};
+use crate::script_fonts::ScriptFonts;
+use app::{Aside, SessionApp, Show};
 use clock::Clock;
 use paint::Pictures;
+use screen_watch::ScreenWatch;
+pub use station::measure_station;
+use view::ViewLink;
+pub use view::experimenters_view;
 
 /// The present time.
 pub(crate) fn utc_now() -> jiff::Timestamp {
@@ -51,41 +60,37 @@ pub fn run(study: &Study, options: &RunOptions) -> Result<SessionEnd, Experiment
     let outcome = Outcome::default();
     let app_outcome = Rc::clone(&outcome);
     let title = format!("{} - subject {}", study.protocol.study, options.subject);
-    let viewport = ViewportBuilder::default()
-        .with_title(&title)
-        .with_app_id("acuity")
-        .with_decorations(false)
-        .with_fullscreen(true);
-    let native = NativeOptions {
-        viewport,
-        renderer: Renderer::Glow,
-        dithering: false,
-        run_and_return: true,
-        ..NativeOptions::default()
-    };
     let protocol = study.protocol.clone();
-    let pilot = options.pilot;
-    let monitor = options.monitor.clone();
-    eframe::run_native(
-        &title,
-        native,
-        Box::new(move |creation| {
-            let context = &creation.egui_ctx;
-            let show = Show {
-                plan: protocol.session,
-                pictures: Pictures::upload(context, set, &protocol.stimuli),
-                pilot,
-                monitor,
-                station,
-                display,
-                out_of_gamut_px,
-            };
-            let app = SessionApp::new(sitting, show, clock, app_outcome);
-            Ok(Box::new(app))
-        }),
-    )
-    .map_err(|error| ExperimentError::Window {
-        reason: reason(&error),
+    let (pilot, monitor) = (options.pilot, options.monitor.clone());
+    let view_study = study.clone();
+    let view_options = options.clone();
+    open(full_screen(&title), move |creation| {
+        ScriptFonts::new(&view_study).install(&creation.egui_ctx);
+        let show = Show {
+            plan: protocol.session,
+            pictures: Pictures::upload(&creation.egui_ctx, set, &protocol.stimuli),
+            pilot,
+            monitor,
+            station,
+            display,
+            out_of_gamut_px,
+        };
+        let context = &creation.egui_ctx;
+        let view = view_options.view.as_ref();
+        let view =
+            view.map(|view| ViewLink::open(view, &view_study, &view_options, context.clone()));
+        let aside = Aside {
+            view: view.transpose()?,
+            watch: ScreenWatch::start(context.clone()),
+            asks_focus_until_s: 0.0,
+        };
+        Ok(Box::new(SessionApp::new(
+            sitting,
+            show,
+            aside,
+            clock,
+            app_outcome,
+        )))
     })?;
     let left = outcome.borrow_mut().take();
     left.unwrap_or_else(|| {
@@ -93,6 +98,46 @@ pub fn run(study: &Study, options: &RunOptions) -> Result<SessionEnd, Experiment
             reason: "it was closed by the system".to_owned(),
         })
     })
+}
+
+/// A window that fills a monitor.
+fn full_screen(title: &str) -> ViewportBuilder {
+    ViewportBuilder::default()
+        .with_title(title)
+        .with_app_id("acuity")
+        .with_decorations(false)
+        .with_fullscreen(true)
+}
+
+/// Opens a window and runs it to its end.
+fn open(
+    viewport: ViewportBuilder,
+    app: impl FnOnce(&eframe::CreationContext<'_>) -> Result<Box<dyn eframe::App>, ExperimentError>,
+) -> Result<(), ExperimentError> {
+    let title = viewport.title.clone().unwrap_or_default();
+    let native = NativeOptions {
+        viewport,
+        renderer: Renderer::Glow,
+        dithering: false,
+        run_and_return: true,
+        ..NativeOptions::default()
+    };
+    let mut fault = None;
+    let create = |creation: &eframe::CreationContext<'_>| {
+        app(creation).map_err(|error| {
+            let words = error.to_string();
+            fault = Some(error);
+            words.into()
+        })
+    };
+    let opened = eframe::run_native(&title, native, Box::new(create));
+    match (opened, fault) {
+        (_, Some(error)) => Err(error),
+        (Ok(()), None) => Ok(()),
+        (Err(error), None) => Err(ExperimentError::Window {
+            reason: reason(&error),
+        }),
+    }
 }
 
 /// Why there is no window, in words that help; winit's own name a line of its source.

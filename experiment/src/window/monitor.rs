@@ -33,6 +33,11 @@ impl Monitor {
         }
     }
 
+    /// The names of all monitors, in the order of the window system.
+    pub(crate) fn all(&self) -> &[String] {
+        &self.all
+    }
+
     /// Whether the window is on the monitor with this name; if not, it is sent there.
     ///
     /// # Errors

@@ -1,0 +1,192 @@
+//! The pages as an experimenter or a screen reader meets them: by the names of their widgets.
+
+use std::cell::RefCell;
+
+use eframe::egui::vec2;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use super::*;
+use crate::color_draft::ColorSource;
+use crate::common::small_study;
+use crate::{DisplayColor, Patch};
+
+struct Window {
+    harness: Harness<'static>,
+    pages: Rc<RefCell<Pages>>,
+    wishes: Rc<RefCell<Vec<Wish>>>,
+}
+
+fn window() -> Window {
+    let folder = tempfile::tempdir().unwrap();
+    let mut study = small_study(folder.path());
+    study.protocol.session.viewing_tolerance = Some(0.02);
+    let mut pages = Pages::new(StationDraft::new(&study, None));
+    pages.monitors = vec!["DP-1".to_owned(), "HDMI-1".to_owned()];
+    pages.draft.stand_on(ScreenFacts {
+        name: Some("DP-1".to_owned()),
+        size_px: [1920, 1080],
+        nominal_hz: Some(60.0),
+    });
+    let pages = Rc::new(RefCell::new(pages));
+    let wishes = Rc::new(RefCell::new(Vec::new()));
+    let (inner, told) = (Rc::clone(&pages), Rc::clone(&wishes));
+    let mut frames = 0;
+    let harness = Harness::builder()
+        .with_size(vec2(1700.0, 960.0))
+        .build_ui(move |ui| {
+            frames += 1;
+            desk::dress(ui.ctx());
+            let wish = inner.borrow_mut().show(ui, f64::from(frames) / 60.0);
+            told.borrow_mut().extend(wish);
+        });
+    Window {
+        harness,
+        pages,
+        wishes,
+    }
+}
+
+impl Window {
+    fn click(&mut self, name: &str) {
+        self.harness.get_by_label(name).click();
+        self.harness.run_steps(3);
+    }
+
+    fn has(&self, words: &str) -> bool {
+        self.harness
+            .query_all_by_label_contains(words)
+            .next()
+            .is_some()
+    }
+}
+
+#[test]
+fn the_outline_grows_by_the_arrow_keys_and_nothing_is_saved_before() {
+    let mut window = window();
+    assert!(window.has("Not measured yet"));
+    window.click("Save and close");
+    assert!(window.wishes.borrow().is_empty());
+    window.click("outline of a bank card");
+    for _ in 0..12 {
+        window.harness.key_press(Key::ArrowLeft);
+        window.harness.run_steps(1);
+    }
+    assert_eq!(window.pages.borrow().draft.card_px(), 312.0);
+    window
+        .harness
+        .key_press_modifiers(egui::Modifiers::SHIFT, Key::ArrowUp);
+    window.harness.run_steps(2);
+    assert_eq!(window.pages.borrow().draft.card_px(), 322.0);
+    // 85.60 mm / 322 = 0.2658 mm.
+    assert!(window.has("0.2658 mm"));
+    window.click("HDMI-1");
+    window.click("Save and close");
+    let wishes = window.wishes.borrow();
+    let [Wish::Monitor(1), Wish::Save(station)] = wishes.as_slice() else {
+        panic!("{wishes:?}");
+    };
+    assert!((station.pixel_pitch_mm() - 85.60 / 322.0).abs() < 1e-5);
+    assert_eq!(station.color, DisplayColor::Srgb);
+}
+
+#[test]
+fn the_distance_follows_from_the_screen_and_says_whether_it_will_do() {
+    let mut window = window();
+    window.click("2  Distance");
+    assert!(window.has("First measure the screen"));
+    window.pages.borrow_mut().draft.set_card_px(85.60 / 0.2745);
+    window.harness.run_steps(2);
+    // 0.02745 / tan(0.019 degrees) = 82.78 cm (bc -l).
+    assert!(window.has("82.8 cm") && window.has("Within the protocol's tolerance of 2 %"));
+    window.pages.borrow_mut().draft.distance_typed = "60".to_owned();
+    window.harness.run_steps(2);
+    assert!(window.has("Outside the protocol's tolerance"));
+}
+
+#[test]
+fn three_hundred_frames_are_timed() {
+    let mut window = window();
+    window.click("3  Refresh");
+    window.harness.run_steps(305);
+    assert!(window.has("16.667 ms (60.00 Hz)") && window.has("Locked to the display's refresh."));
+}
+
+/// The readings are an sRGB display's at 100 cd/m² (D65; Y of the primaries .2126, .7152, .0722).
+#[test]
+fn patches_fill_the_screen_and_take_readings() {
+    let mut window = window();
+    window.click("4  Colour");
+    window.click("read patch by patch");
+    window.click("Show the patches on the whole screen");
+    assert!(window.has("white (1 of 12)") && window.has("100.00  0.3127  0.3290"));
+    window.click("Next");
+    assert!(window.has("red (2 of 12)") && window.has("21.26  0.6400  0.3300"));
+    let field = window
+        .harness
+        .get_by_role_and_label(egui::Role::TextInput, "Y (cd/m2)");
+    field.focus();
+    window.harness.run_steps(2);
+    let field = window
+        .harness
+        .get_by_role_and_label(egui::Role::TextInput, "Y (cd/m2)");
+    field.type_text("21.3");
+    window.harness.run_steps(2);
+    {
+        let pages = window.pages.borrow();
+        let (patch, fields) = &pages.draft.color.readings[1];
+        assert_eq!((*patch, fields[0].as_str()), (Patch::PRIMARIES[0], "21.3"));
+    }
+    window.click("Close");
+    assert!(
+        window.has("What colours does the display give?") && window.has("white is not read yet")
+    );
+}
+
+#[test]
+fn a_bare_patch_has_no_words_until_a_key() {
+    let mut window = window();
+    window.click("4  Colour");
+    window.click("Show the patches on the whole screen");
+    window.click("Hide this strip");
+    assert!(!window.has("white (1 of 12)"));
+    window.harness.key_press(Key::Space);
+    window.harness.run_steps(3);
+    assert!(window.has("white (1 of 12)"));
+    for _ in 0..12 {
+        window.harness.key_press(Key::PageDown);
+        window.harness.run_steps(2);
+    }
+    assert!(window.has("What colours does the display give?"));
+}
+
+#[test]
+fn the_room_is_compared_with_the_advice() {
+    let mut window = window();
+    {
+        let draft = &mut window.pages.borrow_mut().draft;
+        draft.peak_typed = "400".to_owned();
+        draft.background_typed = "100".to_owned();
+        draft.room_typed = "15".to_owned();
+    }
+    window.click("5  Room");
+    assert!(window.has("outside the advice of BT.500"));
+    assert!(window.has("25 % of the peak, above the advice"));
+    assert!(window.has("A room of 15 lx is within"));
+}
+
+#[test]
+fn closing_without_saving_is_asked() {
+    let mut window = window();
+    window.harness.key_press(Key::Escape);
+    window.harness.run_steps(2);
+    window.click("Go on");
+    assert!(window.wishes.borrow().is_empty());
+    window.click("Close");
+    window.click("Close without saving");
+    assert_eq!(*window.wishes.borrow(), [Wish::Close]);
+    assert_eq!(
+        window.pages.borrow().draft.color.source,
+        ColorSource::Declared
+    );
+}
