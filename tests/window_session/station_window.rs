@@ -8,8 +8,8 @@ use std::time::Duration;
 
 use experiment::StationFile;
 
-use crate::PROTOCOL;
 use crate::display::{Display, Manager, SIZE, Screenshot};
+use crate::{PROTOCOL, output_of};
 
 /// The outline's line stands upright at its left and right end: the most distant columns of its blue in the left part.
 fn outline_px(shot: &Screenshot) -> Option<usize> {
@@ -56,9 +56,8 @@ fn an_outline_made_as_wide_as_a_card_is_the_size_of_the_screen() {
     });
     // "Save and close" is the last button of the foot.
     display.click([SIZE[0] - 80, SIZE[1] - 36]);
-    let output = child.wait_with_output().unwrap();
-    let text = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
-    assert_eq!(output.status.code(), Some(0), "{text}");
+    let (code, text) = output_of(child);
+    assert_eq!(code, Some(0), "{text}");
     let station = StationFile::read(&path).unwrap();
     // 85.60 mm / 312 = 0.27436 mm; 1280 of them are 351.18 mm; 0.27436 / tan(0.019 degrees) = 82.7 cm (bc -l).
     assert!((station.width_mm - 351.18).abs() < 0.01, "{station:?}");

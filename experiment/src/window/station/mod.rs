@@ -83,6 +83,7 @@ pub fn measure_station(
         gate: Gate::default(),
         clock: Clock::start(),
         outcome: Rc::clone(&outcome),
+        is_closing: false,
     };
     let title = format!("Acuity station - {}", study.protocol.study);
     open(full_screen(&title), |creation| {
@@ -241,9 +242,16 @@ struct StationApp {
     gate: Gate,
     clock: Clock,
     outcome: Outcome,
+    /// The window is on its way out.
+    is_closing: bool,
 }
 
 impl StationApp {
+    fn close(&mut self, context: &egui::Context) {
+        self.is_closing = true;
+        context.send_viewport_cmd(ViewportCommand::Close);
+    }
+
     fn frame(&mut self, ui: &mut Ui) -> Result<(), ExperimentError> {
         let context = ui.ctx().clone();
         let now_s = self.clock.now_s();
@@ -274,9 +282,9 @@ impl StationApp {
             Some(Wish::Save(station)) => {
                 station.write(&self.path)?;
                 *self.outcome.borrow_mut() = Ok(Some(*station));
-                context.send_viewport_cmd(ViewportCommand::Close);
+                self.close(&context);
             }
-            Some(Wish::Close) => context.send_viewport_cmd(ViewportCommand::Close),
+            Some(Wish::Close) => self.close(&context),
             None => {}
         }
         Ok(())
@@ -285,10 +293,13 @@ impl StationApp {
 
 impl eframe::App for StationApp {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+        if self.is_closing {
+            return;
+        }
         self.monitor = Monitor::of(frame);
         if let Err(error) = self.frame(ui) {
             *self.outcome.borrow_mut() = Err(error);
-            ui.ctx().send_viewport_cmd(ViewportCommand::Close);
+            self.close(ui.ctx());
         }
     }
 }
