@@ -5,6 +5,8 @@
 mod display;
 #[path = "window_session/experimenters_view.rs"]
 mod experimenters_view;
+#[path = "window_session/screensaver.rs"]
+mod screensaver;
 #[path = "window_session/station_window.rs"]
 mod station_window;
 

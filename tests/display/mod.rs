@@ -195,7 +195,8 @@ pub(crate) fn png_pixels(path: &Path) -> Vec<u8> {
     output.stdout
 }
 
-fn is_on_path(program: &str) -> bool {
+/// Whether there is a program with this name.
+pub(crate) fn is_on_path(program: &str) -> bool {
     let path = env::var_os("PATH").unwrap_or_default();
     env::split_paths(&path).any(|folder| folder.join(program).exists())
 }
