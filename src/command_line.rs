@@ -12,19 +12,21 @@ use protocols::{
 use crate::analysis_arguments::{AnovaArguments, ReportArguments};
 
 /// A psychophysics experiment harness: scene, rays, tree, channel images, stimuli, session, ratings, ANOVA,
-/// report.
+/// report. Without a command it opens the app.
 #[derive(Debug, Parser)]
-#[command(name = "acuity", version, arg_required_else_help = true)]
+#[command(name = "acuity", version)]
 pub(crate) struct CommandLine {
     /// Print no progress.
     #[arg(short, long, global = true)]
     pub(crate) quiet: bool,
     #[command(subcommand)]
-    pub(crate) command: Command,
+    pub(crate) command: Option<Command>,
 }
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    /// Open the app on a study: its stimuli, station, sessions and report.
+    App(AppArguments),
     /// Is everything ready for the first subject, or is a scene all supported? One line for each thing that is not.
     Check(CheckArguments),
     /// Make the stimulus set of a protocol, and print what was spent and saved per channel.
@@ -91,6 +93,12 @@ impl DataFolder {
         let named = self.named.clone();
         named.unwrap_or_else(|| study.default_data_dir(Observer::Person))
     }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct AppArguments {
+    /// The protocol file.
+    pub(crate) protocol: PathBuf,
 }
 
 #[derive(Debug, Args)]

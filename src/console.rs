@@ -2,9 +2,13 @@
 
 use std::fmt::{self, Display};
 use std::io::{self, IsTerminal as _, Write as _};
+use std::process::ExitCode;
 
+use clap::CommandFactory as _;
 use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use renderer::{Stage, Step};
+
+use crate::command_line::CommandLine;
 
 /// Prints a result, one line or several, on stdout.
 pub(crate) fn print(result: impl Display) -> io::Result<()> {
@@ -18,6 +22,13 @@ pub(crate) fn print(result: impl Display) -> io::Result<()> {
 /// Prints an error with its causes on stderr; what cannot be printed there can be printed nowhere.
 pub(crate) fn print_error(error: &anyhow::Error) {
     _ = writeln!(io::stderr().lock(), "error: {error:#}");
+}
+
+/// Prints what is wrong with a command on stderr, and how commands look; the exit code is 2.
+pub(crate) fn print_help(wrong: &str) -> ExitCode {
+    let help = CommandLine::command().render_help();
+    _ = writeln!(io::stderr().lock(), "error: {wrong}\n\n{help}");
+    ExitCode::from(2)
 }
 
 /// Prints the warnings of a scene on stderr.

@@ -5,6 +5,7 @@
 mod acuity_comparison;
 mod analyse;
 mod analysis_arguments;
+mod app;
 mod command_line;
 mod console;
 mod exit_code;
@@ -34,8 +35,27 @@ fn main() -> ExitCode {
     } else {
         Progress::Drawn
     };
-    match run(arguments.command, progress) {
+    let Some(command) = arguments.command else {
+        return without_command();
+    };
+    match run(command, progress) {
         Ok(code) => code,
+        Err(error) => {
+            console::print_error(&error);
+            exit_code::of(&error)
+        }
+    }
+}
+
+/// `acuity` alone opens the app; where there is no display it says so, and what else there is.
+fn without_command() -> ExitCode {
+    if !app::has_display() {
+        return console::print_help(
+            "found no DISPLAY, expected a desktop for the app's window; log in to one, or name a command",
+        );
+    }
+    match app::open(None) {
+        Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             console::print_error(&error);
             exit_code::of(&error)
@@ -45,6 +65,7 @@ fn main() -> ExitCode {
 
 fn run(command: Command, progress: Progress) -> anyhow::Result<ExitCode> {
     match command {
+        Command::App(arguments) => app::open(Some(&arguments.protocol))?,
         Command::Check(arguments) => return sit::check(&arguments),
         Command::Render(arguments) => render::set(&arguments, progress)?,
         Command::Image(arguments) => image::image(&arguments, progress)?,

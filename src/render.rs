@@ -27,23 +27,46 @@ pub(crate) fn make_set(
     progress: Progress,
 ) -> anyhow::Result<()> {
     let interrupt = Interrupt::listen()?;
-    let mut warnings = Vec::new();
-    let summary = progress.of_rendering(|told| {
+    let made = progress.of_rendering(|told| {
         let watch = Watch::new(told, interrupt.flag());
-        Ok::<String, RendererError>(match &study.protocol.stimuli {
-            Stimuli::Rendered(_) => {
-                let summary = renderer::render_set(study, out, threads, &watch)?;
-                warnings.clone_from(&summary.warnings);
-                summary.to_string()
-            }
-            Stimuli::Pictures(pictures) => {
-                renderer::make_picture_set(study, pictures, out, &watch)?.to_string()
-            }
-        })
+        make(study, out, threads, &watch)
     })?;
-    console::print_warnings(&warnings);
-    console::print(summary)?;
+    console::print_warnings(&made.warnings);
+    console::print(made.account)?;
     Ok(())
+}
+
+/// A stimulus set that was made.
+pub(crate) struct Made {
+    /// What it cost, in words.
+    pub(crate) account: String,
+    /// What its scene asked for in vain.
+    pub(crate) warnings: Vec<String>,
+}
+
+/// Makes the stimulus set of a study, whichever way its images come.
+pub(crate) fn make(
+    study: &Study,
+    out: &Path,
+    threads: Option<NonZeroUsize>,
+    watch: &Watch<'_>,
+) -> Result<Made, RendererError> {
+    match &study.protocol.stimuli {
+        Stimuli::Rendered(_) => {
+            let summary = renderer::render_set(study, out, threads, watch)?;
+            Ok(Made {
+                account: summary.to_string(),
+                warnings: summary.warnings,
+            })
+        }
+        Stimuli::Pictures(pictures) => {
+            let summary = renderer::make_picture_set(study, pictures, out, watch)?;
+            Ok(Made {
+                account: summary.to_string(),
+                warnings: Vec::new(),
+            })
+        }
+    }
 }
 
 pub(crate) fn figures(arguments: &FiguresArguments) -> anyhow::Result<()> {

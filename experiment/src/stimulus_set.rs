@@ -237,7 +237,7 @@ fn read_image(
 }
 
 /// Every file of the set that is not as the manifest says: one line each.
-pub(crate) fn faults(study: &Study, stimuli_dir: &Path) -> Vec<String> {
+pub fn faults(study: &Study, stimuli_dir: &Path) -> Vec<String> {
     let mut faults = Vec::new();
     if let Some(pictures) = study.protocol.stimuli.pictures() {
         faults.extend(pictures.check_files().err().map(|error| error.to_string()));

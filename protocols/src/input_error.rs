@@ -54,6 +54,26 @@ impl InputError {
     pub fn file(&self) -> &Path {
         &self.file
     }
+
+    /// Where in the file.
+    pub fn place(&self) -> Option<&str> {
+        self.place.as_deref()
+    }
+
+    /// What is there.
+    pub fn found(&self) -> &str {
+        &self.found
+    }
+
+    /// What should be there.
+    pub fn expected(&self) -> &str {
+        &self.expected
+    }
+
+    /// What the user should do.
+    pub fn advice(&self) -> Option<&str> {
+        self.remedy.as_deref()
+    }
 }
 
 impl fmt::Display for InputError {

@@ -3,7 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::Path;
 
-use protocols::Study;
+use protocols::{Sha256Digest, Study};
 
 use crate::error::RendererError;
 use crate::image_request::ImageRequest;
@@ -71,4 +71,13 @@ pub fn render_image(
         warnings,
         ..summary
     })
+}
+
+/// The digest of a scene: of its file together with those that it names, as it stands in a manifest.
+///
+/// # Errors
+///
+/// [`RendererError::Input`] if the scene is missing or wrong.
+pub fn scene_sha256(path: &Path) -> Result<Sha256Digest, RendererError> {
+    Scene::read_with_digest(path).map(|(_scene, sha256)| sha256)
 }

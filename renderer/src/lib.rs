@@ -77,7 +77,7 @@ pub use confidence::{Confidence, ConfidenceReached};
 pub use error::RendererError;
 pub use estimate::Estimate;
 pub use figures::draw_figures;
-pub use from_scene::{render_image, render_set};
+pub use from_scene::{render_image, render_set, scene_sha256};
 pub use image_record::ImageRecord;
 pub use image_request::ImageRequest;
 pub use matrix3::Matrix3;
