@@ -100,21 +100,7 @@ fn measure(path: &Path) -> Result<(), RendererError> {
     let bits = bits(&sampler, &trees);
     let hits: u32 = trees.iter().map(RayTree::hits).sum();
     let nanoseconds = |secs: f64| 1e9 * secs / RAYS as f64;
-    let mut one = RayTree::default();
-    let alone = nanoseconds(least_secs(ROUNDS, || {
-        for &point in &points {
-            sampler.intersect(point, &mut one);
-            black_box(&one);
-        }
-    }));
-    let mut some = vec![RayTree::default(); TOGETHER];
-    let points = by_place(points);
-    let intersect = nanoseconds(least_secs(ROUNDS, || {
-        for points in points.chunks(TOGETHER) {
-            sampler.intersect_all(points, &mut some[..points.len()]);
-            black_box(&some);
-        }
-    }));
+    let [alone, intersect] = intersecting_secs(&sampler, points).map(nanoseconds);
     let shading = |shade: &dyn Fn(&RayTree)| nanoseconds(shading_secs(&trees, shade));
     let shade = Channel::ALL.map(|channel| {
         shading(&|tree| {
@@ -175,6 +161,26 @@ fn set_up_secs(scene: &Scene) -> f64 {
         }
     });
     secs / f64::from(passes)
+}
+
+/// How long it takes to intersect all, one by one and side by side.
+fn intersecting_secs(sampler: &SceneSampler<'_>, points: Vec<ScreenPoint>) -> [f64; 2] {
+    let mut one = RayTree::default();
+    let alone = least_secs(ROUNDS, || {
+        for &point in &points {
+            sampler.intersect(point, &mut one);
+            black_box(&one);
+        }
+    });
+    let mut some = vec![RayTree::default(); TOGETHER];
+    let points = by_place(points);
+    let together = least_secs(ROUNDS, || {
+        for points in points.chunks(TOGETHER) {
+            sampler.intersect_all(points, &mut some[..points.len()]);
+            black_box(&some);
+        }
+    });
+    [alone, together]
 }
 
 /// How long it takes to shade all.
