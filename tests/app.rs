@@ -1,7 +1,5 @@
 //! The app from outside: where there is no display, and in a real window.
 
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
-
 mod acuity;
 
 use acuity::{PROTOCOL, acuity, stderr, text_of};

@@ -66,7 +66,7 @@ impl Fixture {
     }
 
     /// Leaves a session with so many ratings.
-    pub(crate) fn cut_to(&self, session: &ListedSession, rated: usize) {
+    pub(crate) fn cut_to(session: &ListedSession, rated: usize) {
         let text = fs::read_to_string(&session.ratings_path).unwrap();
         let lines: Vec<&str> = text.lines().take(rated + 1).collect();
         fs::write(&session.ratings_path, lines.join("\n") + "\n").unwrap();

@@ -154,7 +154,7 @@ mod tests {
         };
         let small = small(&image, 2);
         assert_eq!(small.size, [2, 1]);
-        let reds: Vec<u8> = small.pixels.iter().map(|pixel| pixel.r()).collect();
+        let reds: Vec<u8> = small.pixels.iter().map(eframe::egui::Color32::r).collect();
         assert_eq!(reds, [15, 100]);
     }
 

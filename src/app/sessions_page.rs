@@ -14,7 +14,7 @@ use super::launcher::Ended;
 use super::look::{self, Enabled};
 use super::page::{Around, Asked, Tools, launch};
 use super::session_table::{self, Action};
-use super::study_state::{Mark, Step};
+use super::study_state::{Mark, StationState, Step};
 
 /// How often the list is read while a session runs.
 const READ_EVERY_S: f64 = 2.0;
@@ -320,6 +320,11 @@ impl SessionsPage {
         let mut words = command("run", around, &wanted.subject, wanted.session);
         if let Some(speed) = wanted.pilot {
             words.extend(["--pilot".into(), speed.to_string().into()]);
+        }
+        if let StationState::Measured(station) = &around.state.station {
+            // Where the station names a monitor for it, the experimenter sees the session too.
+            let view = station.experimenter_monitor.as_ref();
+            words.extend(view.map(|_monitor| "--experimenter".into()));
         }
         let what = match wanted.pilot {
             Some(_) => "Trial run",

@@ -123,7 +123,7 @@ impl StationPage {
             look::weak(ui, "empty: the one that the desktop chooses");
         });
         let before = match &around.state.station {
-            StationState::Measured(station) => Some(station),
+            StationState::Measured(station) => Some(&**station),
             _ => None,
         };
         let viewing = around.state.study.protocol.viewing;
@@ -226,7 +226,7 @@ fn facts(station: &StationFile, around: Around<'_>) -> Vec<(&'static str, String
     );
     let surround = station.surround.as_deref().unwrap_or("not noted");
     let refresh = around.state.sessions.last_refresh();
-    let refresh = refresh.map(|refresh| refresh.in_words());
+    let refresh = refresh.map(experiment::Refresh::in_words);
     let monitor = station.monitor.as_deref();
     let size = format!(
         "{} mm wide, {} pixels: {:.4} mm per pixel",

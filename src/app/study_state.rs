@@ -103,7 +103,7 @@ pub(crate) enum StationState {
     /// It cannot be used for this study.
     Unfit(Fault),
     /// It was measured and may be used.
-    Measured(StationFile),
+    Measured(Box<StationFile>),
 }
 
 /// The sessions.
@@ -245,7 +245,7 @@ impl StationState {
             return Self::NotMeasured { is_needed };
         };
         match experiment::station_for(study, Some(file)) {
-            Ok(Some(station)) => Self::Measured(station),
+            Ok(Some(station)) => Self::Measured(Box::new(station)),
             Ok(None) => Self::NotMeasured { is_needed: false },
             Err(error) => Self::Unfit(Fault::of(error)),
         }

@@ -138,7 +138,7 @@ impl User<'_> {
 
     fn focused(&self) -> String {
         let is_focused = |node: &egui_kittest::Node<'_>| node.is_focused();
-        let mut nodes = self.harness.root().children_recursive().into_iter();
+        let mut nodes = self.harness.root().children_recursive();
         let node = nodes.find(is_focused);
         node.and_then(|node| node.accesskit_node().label())
             .unwrap_or_default()
@@ -288,7 +288,7 @@ fn stimuli_are_made_on_the_page_and_shown() {
 fn an_unfinished_session_is_resumed_or_closed_with_a_reason() {
     let fixture = ready();
     let sessions = fixture.simulate_people(2);
-    fixture.cut_to(&sessions[1], 12);
+    Fixture::cut_to(&sessions[1], 12);
     let subject = sessions[1].subject.to_string();
     let mut user = User::with(&fixture);
     user.launcher.answer(Some(0), "stopped after 14 of 30");
@@ -366,7 +366,7 @@ fn the_working_folder_s_protocols_are_offered_and_the_choice_is_remembered() {
     user.wait("Stimuli:");
     assert_eq!(
         Settings::read(&user.settings).recent,
-        [fixture.protocol.clone()]
+        std::slice::from_ref(&fixture.protocol)
     );
     user.click("Theme: Dark");
     assert_eq!(Settings::read(&user.settings).theme, ThemeChoice::Dark);

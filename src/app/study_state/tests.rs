@@ -115,7 +115,7 @@ fn sessions_and_the_report_follow_the_ratings() {
     assert_eq!(state.report, ReportState::Aged(ReportAge::Current));
     assert_eq!(state.of(Step::Report), (Mark::Done, "Ready".to_owned()));
 
-    fixture.cut_to(&subjects[2], 12);
+    Fixture::cut_to(&subjects[2], 12);
     let state = fixture.state();
     assert_eq!(state.sessions.counts(), counts(2, 1));
     assert_eq!(state.of(Step::Sessions).1, "2 of 3 subjects done");
