@@ -12,8 +12,10 @@ impl Session {
             Order::Opened => self.note(Noted::View, at_s, "opened"),
             Order::Note(words) => self.note(Noted::Words, at_s, words),
             Order::Pause if self.asking.is_none() && self.state != State::Thanks => {
-                self.note(Noted::Experimenter, at_s, "pause");
                 self.wait(Screen::Paused, Noted::Pause, at_s);
+                if self.asking.is_some() {
+                    self.note(Noted::Experimenter, at_s, "pause");
+                }
             }
             Order::Resume if self.asking.is_some() => {
                 self.note(Noted::Experimenter, at_s, "resume");

@@ -77,6 +77,9 @@ fn outline(ui: &mut Ui, draft: &mut StationDraft, size: egui::Vec2) {
             ..egui::EventFilter::default()
         };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    }
+    // A press that comes with the click that selects the outline counts too; only a field keeps its arrows.
+    if !ui.ctx().text_edit_focused() {
         let steps = ui.input(arrow_steps);
         if steps != 0 {
             draft.set_card_px(draft.card_px().round() + f64::from(steps));
