@@ -9,10 +9,12 @@ use std::os::unix::fs::DirBuilderExt as _;
 use std::path::Path;
 
 use protocols::rating::columns;
-use protocols::{Access, DataSet, InputError, Observer, ReadError, Study, write_atomically};
+use protocols::{
+    Access, DataSet, InputError, Observer, ReadError, Study, settle_names, write_atomically,
+};
 use serde_json::{Value, json};
 
-use crate::ExperimentError;
+use crate::{ExperimentError, timing_log};
 
 /// Makes the folders and the description of the data set, or checks those that are there.
 pub(crate) fn prepare(
@@ -112,10 +114,14 @@ fn description(study: &Study, observer: Observer) -> Value {
             "simulated observers (a model of vision with bias, gain and noise; no person took part)",
         ),
     };
+    // Simulated sessions have no frames.
+    let has_timing = observer == Observer::Person;
+    let timing = timing_log::columns().filter(|_| has_timing);
     let of_ratings = columns(&study.protocol.stimuli.factors());
     let variables: Vec<Value> = of_ratings
         .into_iter()
         .chain(crate::intake_files::columns(&study.protocol.session))
+        .chain(timing)
         .map(|column| {
             let mut variable = json!({
                 "@type": "PropertyValue",
@@ -142,8 +148,10 @@ fn description(study: &Study, observer: Observer) -> Value {
     })
 }
 
-/// Creates a folder that only its owner may enter, and the folders above it.
+/// Creates a folder that only its owner may enter, and the folders above it; their names outlast a power cut.
 pub(crate) fn create_private_folder(folder: &Path) -> Result<(), ExperimentError> {
+    let is_missing = |path: &&Path| !path.as_os_str().is_empty() && !path.exists();
+    let missing: Vec<&Path> = folder.ancestors().take_while(is_missing).collect();
     DirBuilder::new()
         .recursive(true)
         .mode(0o700)
@@ -155,7 +163,15 @@ pub(crate) fn create_private_folder(folder: &Path) -> Result<(), ExperimentError
                     .into()
             }
             _ => ExperimentError::io("create", folder)(error),
-        })
+        })?;
+    for made in missing {
+        let above = match made.parent() {
+            Some(above) if !above.as_os_str().is_empty() => above,
+            _ => Path::new("."),
+        };
+        settle_names(above).map_err(ExperimentError::io("sync", above))?;
+    }
+    Ok(())
 }
 
 pub(crate) fn has_entries(folder: &Path) -> Result<bool, ExperimentError> {

@@ -435,4 +435,8 @@ mod crash;
 #[cfg(test)]
 mod intake_kept;
 #[cfg(test)]
+mod power_loss;
+#[cfg(test)]
+mod psych_ds;
+#[cfg(test)]
 pub(crate) mod tests;

@@ -11,10 +11,42 @@ use std::path::{Path, PathBuf};
 
 use jiff::Timestamp;
 use protocols::DataSet;
+use protocols::rating::Column;
 
 use crate::rating_row::utc;
 use crate::{ExperimentError, FrameLog, Note, data_set_files};
 
+/// The columns of both tables that the ratings do not have, with unit and meaning.
+const COLUMNS: [(&str, Option<&str>, &str); 8] = [
+    (
+        "sitting",
+        None,
+        "sitting of the session, from 1: a resumed session has more",
+    ),
+    ("screen", None, "what the frames showed"),
+    (
+        "began_us",
+        Some("us"),
+        "first frame of the run, on the clock of the sitting",
+    ),
+    (
+        "intervals_us",
+        Some("us"),
+        "times from each frame of the run to the next, with spaces between",
+    ),
+    (
+        "at_us",
+        Some("us"),
+        "the event, on the clock of the sitting",
+    ),
+    ("at_utc", None, "the event, UTC, ISO 8601"),
+    ("event", None, "what happened"),
+    (
+        "detail",
+        None,
+        "more about it, in words or a number with its unit",
+    ),
+];
 const FRAMES_HEADER: &str = "sitting,trial_id,screen,began_us,intervals_us\n";
 const EVENTS_HEADER: &str = "sitting,at_us,at_utc,trial_id,event,detail\n";
 
@@ -26,6 +58,15 @@ pub(crate) struct TimingLog {
     clock_zero: Timestamp,
     /// Which sitting of the session this is, from 1.
     sitting: usize,
+}
+
+/// The columns that the two tables add to the data set.
+pub(crate) fn columns() -> impl Iterator<Item = Column> {
+    COLUMNS.into_iter().map(|(name, unit, description)| Column {
+        name: name.to_owned(),
+        description: description.to_owned(),
+        unit,
+    })
 }
 
 impl TimingLog {

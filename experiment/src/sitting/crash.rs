@@ -57,7 +57,7 @@ fn a_victim_sits_the_session() {
     }
 }
 
-fn victim(place: &Place, wrapper: &[&str]) -> Child {
+pub(super) fn victim(place: &Place, wrapper: &[&str]) -> Child {
     let program = std::env::current_exe().unwrap();
     let mut words = wrapper
         .iter()
@@ -79,13 +79,13 @@ fn victim(place: &Place, wrapper: &[&str]) -> Child {
 }
 
 /// The last number after a word that the victim said.
-fn last(said: &str, word: &str) -> Option<usize> {
+pub(super) fn last(said: &str, word: &str) -> Option<usize> {
     let mut lines = said.lines().rev();
     lines.find_map(|line| line.strip_prefix(word)?.trim().parse().ok())
 }
 
 /// Every row, checked to be the beginning of the session with the ratings that the victim gave.
-fn check_rows(place: &Place) -> usize {
+pub(super) fn check_rows(place: &Place) -> usize {
     let path = place.ratings_path();
     if !path.exists() {
         return 0;

@@ -24,7 +24,7 @@ fn field(key: &str) -> FormField {
 }
 
 /// A study with consent, a form and screening.
-fn place() -> Place {
+pub(super) fn place() -> Place {
     let mut place = Place::new();
     let session = &mut place.study.protocol.session;
     session.consent = Some(ConsentPlan {
@@ -37,7 +37,7 @@ fn place() -> Place {
     place
 }
 
-fn answers() -> Finished {
+pub(super) fn answers() -> Finished {
     Finished::Form(vec!["yes, \"thick\"".to_owned(), "me@x.org".to_owned()])
 }
 
