@@ -5,7 +5,7 @@ use std::path::Path;
 use analysis::{
     AnalysisOptions, AsymptoteOption, Decimal, Design, Pilots, ReportSummary, TableAnalysis,
 };
-use protocols::{InputError, Study};
+use protocols::{InputError, Study, TableProtocol};
 
 use crate::analysis_arguments::{AnovaArguments, Columns, ReportArguments};
 use crate::console;
@@ -36,6 +36,12 @@ pub(crate) fn report(arguments: &ReportArguments) -> anyhow::Result<()> {
                 let found = format!("the option {option} and no table");
                 let expected = "a protocol alone, or the tables of ratings after it";
                 return Err(InputError::new(first, found, expected).into());
+            }
+            if TableProtocol::is_of_tables_only(path) {
+                let found = "an analysis without stimuli and sessions, and no table";
+                let error = InputError::new(path, found, "the tables of ratings after it");
+                let remedy = format!("name the tables: acuity report {} TABLE...", path.display());
+                return Err(error.remedy(remedy).into());
             }
             report_of_study(path, arguments)
         }

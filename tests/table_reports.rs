@@ -76,7 +76,7 @@ fn options_that_contradict_a_protocol_or_a_table_are_refused() {
             "a column \"channel\"",
         ),
         ("plan.toml plan.toml", "second protocol"),
-        ("plan.toml", "stimuli"),
+        ("plan.toml", "name the tables"),
         ("plan.toml --subject who", "--subject"),
         ("plan.toml nowhere.csv", "no such file"),
         ("nowhere.toml #jspsych-8.3.0.csv", "no such file"),

@@ -119,15 +119,24 @@ impl Sections<'_> {
                 "Files",
                 format!(
                     "<code>report.pdf</code>, <code>report.md</code>, <code>tables.tex</code>, <code>to-paste.txt</code>, <code>anova.json</code>, <code>anova.csv</code>, \
-                     <code>follow-ups.csv</code>, <code>asymptotes.csv</code>, <code>means.csv</code>, and <code>{0}</code> as \
-                     <code>.svg</code>, <code>.pdf</code> and <code>.png</code> (300 dpi) beside this page",
-                    figure_name(self.study)
+                     <code>follow-ups.csv</code>, <code>asymptotes.csv</code>, <code>means.csv</code>, {}<code>{}</code>{} as \
+                     <code>.svg</code>, <code>-outlined.svg</code>, <code>.pdf</code> and <code>.png</code> (300 dpi) beside this page",
+                    self.findings().observer_files(),
+                    figure_name(self.study),
+                    if self.plain_svg.is_some() {
+                        format!(" and <code>{PLAIN_FIGURE}</code>")
+                    } else {
+                        String::new()
+                    }
                 ),
             ),
         ];
         Section::new("Where this comes from").block(Block::Terms(entries))
     }
 }
+
+/// The name of the files of the paper's figure in the form in which it was published.
+pub(crate) const PLAIN_FIGURE: &str = "figure-10-plain";
 
 /// The name of the figure's files: the paper's number for the paper's figure.
 pub(crate) fn figure_name(study: &Study) -> &'static str {

@@ -52,6 +52,8 @@ pub(crate) enum Block {
         file: String,
         caption: String,
     },
+    /// Figures beside each other where there is room, else below each other.
+    Beside(Vec<Self>),
 }
 
 impl Document {

@@ -14,8 +14,8 @@ use crate::study_analysis::{ConditionMean, StudyAnalysis};
 
 /// The width of the figure, in user units.
 pub(crate) const WIDTH: f64 = 760.0;
-const HEIGHT: f64 = 470.0;
-const BOTTOM: f64 = 404.0;
+pub(crate) const HEIGHT: f64 = 470.0;
+pub(crate) const BOTTOM: f64 = 404.0;
 /// How far the two curves stand apart, so that their bars do not cover each other.
 const DODGE: f64 = 3.5;
 
@@ -26,6 +26,8 @@ pub(crate) struct Palette {
     pub(crate) faint: &'static str,
     pub(crate) paper: &'static str,
     pub(crate) chromatic: &'static str,
+    /// The first line of a design of any factors.
+    pub(crate) blue: &'static str,
 }
 
 impl Palette {
@@ -35,6 +37,7 @@ impl Palette {
         faint: "#d9d9d9",
         paper: "#ffffff",
         chromatic: "#c64b00",
+        blue: "#0072b2",
     };
     /// The colours of the page that the figure stands in.
     pub(crate) const PAGE: Self = Self {
@@ -42,6 +45,7 @@ impl Palette {
         faint: "var(--rule)",
         paper: "var(--paper)",
         chromatic: "var(--chromatic)",
+        blue: "var(--blue)",
     };
 }
 

@@ -18,6 +18,7 @@ const MOST_SIGNS: usize = 14;
 /// The frame of a figure.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
+    width: f64,
     pub(crate) left: f64,
     pub(crate) bottom: f64,
     pub(crate) axis: Axis,
@@ -30,6 +31,7 @@ impl Frame {
         let numbers = axis.numbers();
         let most = numbers.iter().map(|(_, text)| text.chars().count()).max();
         Self {
+            width: WIDTH,
             left: SIGN.mul_add(most.unwrap_or(0) as f64, 33.0).max(LEAST_LEFT),
             bottom,
             axis,
@@ -37,12 +39,23 @@ impl Frame {
         }
     }
 
+    /// The same frame, so wide.
+    pub(crate) const fn narrowed(self, width: f64) -> Self {
+        Self { width, ..self }
+    }
+
+    /// The right end of the x axis.
+    pub(crate) fn right(&self) -> f64 {
+        self.width - (WIDTH - RIGHT)
+    }
+
     /// The beginning of a document of this height and description, and its paper.
     pub(crate) fn opened(&self, height: f64, label: &str) -> String {
         format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height}\" role=\"img\" aria-label=\"{}\" \
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {height}\" role=\"img\" aria-label=\"{1}\" \
              font-family=\"Ubuntu, 'Helvetica Neue', Helvetica, Arial, sans-serif\" font-size=\"13\">\n\
-             <rect width=\"{WIDTH}\" height=\"{height}\" style=\"fill:{}\"/>\n",
+             <rect width=\"{0}\" height=\"{height}\" style=\"fill:{2}\"/>\n",
+            self.width,
             escaped(label),
             self.palette.paper
         )
@@ -56,12 +69,13 @@ impl Frame {
     /// The numbers of the y axis, with a line across for each.
     pub(crate) fn grid(&self, svg: &mut String) {
         let Palette { ink, faint, .. } = self.palette;
+        let right = self.right();
         for (value, text) in self.axis.numbers() {
             let y = self.y(value);
             // Writing to a `String` cannot fail, here and below.
             _ = writeln!(
                 svg,
-                "<line x1=\"{0}\" y1=\"{y:.2}\" x2=\"{RIGHT}\" y2=\"{y:.2}\" style=\"stroke:{faint}\" stroke-width=\"0.8\"/>\
+                "<line x1=\"{0}\" y1=\"{y:.2}\" x2=\"{right}\" y2=\"{y:.2}\" style=\"stroke:{faint}\" stroke-width=\"0.8\"/>\
                  <text x=\"{1:.2}\" y=\"{2:.2}\" text-anchor=\"end\" style=\"fill:{ink}\">{text}</text>",
                 self.left,
                 self.left - 9.0,
@@ -74,7 +88,7 @@ impl Frame {
     pub(crate) fn labels(&self, svg: &mut String, labels: &[(f64, String)]) -> f64 {
         let step = (labels.windows(2))
             .map(|pair| pair[1].0 - pair[0].0)
-            .fold(RIGHT - self.left, f64::min);
+            .fold(self.right() - self.left, f64::min);
         let signs = |text: &str| text.chars().count();
         let most = labels
             .iter()
@@ -118,11 +132,12 @@ impl Frame {
         let ink = self.palette.ink;
         let (middle, centre) = (
             f64::midpoint(TOP, self.bottom),
-            f64::midpoint(self.left, RIGHT),
+            f64::midpoint(self.left, self.right()),
         );
+        let right = self.right();
         _ = writeln!(
             svg,
-            "<path d=\"M{0},{TOP}V{1}H{RIGHT}\" fill=\"none\" style=\"stroke:{ink}\" stroke-width=\"1\"/>\
+            "<path d=\"M{0},{TOP}V{1}H{right}\" fill=\"none\" style=\"stroke:{ink}\" stroke-width=\"1\"/>\
              <text x=\"{centre}\" y=\"{2:.2}\" text-anchor=\"middle\" font-size=\"14\" style=\"fill:{ink}\">{3}</text>\
              <text transform=\"translate(20 {middle}) rotate(-90)\" text-anchor=\"middle\" font-size=\"14\" style=\"fill:{ink}\">{4}</text>",
             self.left,

@@ -33,6 +33,14 @@ pub(crate) struct Findings<'a> {
 }
 
 impl Findings<'_> {
+    /// The files of [`Self::observer_figure`], with the comma after them.
+    pub(crate) fn observer_files(&self) -> &'static str {
+        match self.observer_figure(Palette::PRINT) {
+            Some(_) => "<code>observers.svg</code> and <code>.png</code>, and ",
+            None => "and ",
+        }
+    }
+
     /// The curves of each observer, where all rated the same and a figure can hold them.
     pub(crate) fn observer_figure(&self, palette: Palette) -> Option<ObserverFigure<'_>> {
         self.observers?;

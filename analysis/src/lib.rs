@@ -60,6 +60,7 @@ mod permutation;
 mod picture;
 mod picture_analysis;
 mod picture_sections;
+mod plain_figure;
 mod plateau;
 mod polynomial;
 mod power;

@@ -5,10 +5,8 @@ use std::fmt::Write as _;
 use crate::figure::Palette;
 use crate::page::escaped;
 
-/// Okabe & Ito (2008), without black and yellow: legible on white and for any colour vision.
-const COLORS: [&str; 6] = [
-    "#0072b2", "#c64b00", "#009e73", "#a6568a", "#56b4e9", "#8a6d00",
-];
+/// After the palette's blue, Okabe & Ito (2008) without black and yellow: legible on white and for any colour vision.
+const COLORS: [&str; 5] = ["#c64b00", "#009e73", "#a6568a", "#56b4e9", "#8a6d00"];
 const DASHES: [&str; 3] = ["", "5 3", "2 3"];
 
 /// The look of the line of one place.
@@ -24,7 +22,10 @@ impl LineStyle {
     }
 
     const fn color(self) -> &'static str {
-        COLORS[self.place % COLORS.len()]
+        match self.place % (COLORS.len() + 1) {
+            0 => self.palette.blue, // Lighter on a dark page.
+            place => COLORS[place - 1],
+        }
     }
 
     /// Opens a group in which strokes have this look.

@@ -39,6 +39,10 @@ fn block_in_markdown(block: &Block) -> String {
         Block::Figure { file, caption, .. } => {
             format!("![Figure]({file}.png)\n\n{}\n", markdown(caption))
         }
+        Block::Beside(blocks) => {
+            let blocks: Vec<String> = blocks.iter().map(block_in_markdown).collect();
+            blocks.join("\n")
+        }
     }
 }
 

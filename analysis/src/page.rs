@@ -65,6 +65,10 @@ fn block_in_html(block: &Block) -> String {
         Block::Figure { svg, caption, .. } => {
             format!("<figure>\n{svg}<figcaption>{caption}</figcaption>\n</figure>\n")
         }
+        Block::Beside(blocks) => format!(
+            "<div class=\"beside\">\n{}</div>\n",
+            joined(blocks, block_in_html)
+        ),
     }
 }
 

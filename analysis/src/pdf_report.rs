@@ -188,6 +188,11 @@ impl Layout {
             }
             Block::Table(table) => self.table(table),
             Block::Figure { svg, caption, .. } => self.figure(svg, caption)?,
+            Block::Beside(blocks) => {
+                for block in blocks {
+                    self.block(block)?;
+                }
+            }
         }
         Ok(())
     }
@@ -378,6 +383,7 @@ fn printed(svg: &str) -> String {
         .replace(page.faint, print.faint)
         .replace(page.paper, print.paper)
         .replace(page.chromatic, print.chromatic)
+        .replace(page.blue, print.blue)
 }
 
 /// Text outside of pages: UTF-16 with its mark, in hexadecimal.

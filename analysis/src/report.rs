@@ -11,7 +11,7 @@ use protocols::{Observer, Stimuli, Study};
 use crate::anova_table::{quoted, shortest};
 use crate::axis::Axis;
 use crate::cell_figure::CellFigure;
-use crate::data_sections::figure_name;
+use crate::data_sections::{PLAIN_FIGURE, figure_name};
 use crate::document::Document;
 use crate::figure::{Figure, Palette};
 use crate::picture::FigurePicture;
@@ -42,8 +42,8 @@ pub struct ReportSummary {
 }
 
 /// Analyses the ratings of `study` in `data_dir` and writes the report into `out_dir`: `report.html`, `report.md`,
-/// `tables.tex`, `to-paste.txt`, `anova.json`, `anova.csv`, `follow-ups.csv`, `asymptotes.csv`, `means.csv`, and `figure-10` (for own
-/// pictures `figure`) as `.svg`, `-outlined.svg`, `.pdf` and `.png`.
+/// `tables.tex`, `to-paste.txt`, `anova.json`, `anova.csv`, `follow-ups.csv`, `asymptotes.csv`, `means.csv`, and `figure-10` and
+/// `figure-10-plain` (for own pictures `figure`) as `.svg`, `-outlined.svg`, `.pdf` and `.png`.
 ///
 /// Where no `out_dir` is named, simulated observers have a folder of their own, so that their report never
 /// takes the place of people's.
@@ -121,6 +121,7 @@ fn of_rendered(
         ratings,
         analysis: &analysis,
         figure_svg: &figure(Palette::PAGE).to_svg(),
+        plain_svg: Some(&figure(Palette::PAGE).plain()),
     };
     let means = means_csv(&analysis, study.protocol.analysis.confidence);
     let mut document = sections.document();
@@ -134,7 +135,11 @@ fn of_rendered(
         more.push(("figure-predicted.png".to_owned(), png));
         more.push(("figure-predicted.svg".to_owned(), svg.into_bytes()));
     }
-    let mut files = files(&sections, &document, means, print.to_svg())?;
+    let figures = vec![
+        (figure_name(study), print.to_svg()),
+        (PLAIN_FIGURE, print.plain()),
+    ];
+    let mut files = files(&sections, &document, means, figures)?;
     files.extend(more);
     Ok(Contents {
         anova_of: analysis,
@@ -165,13 +170,15 @@ fn of_pictures(
         ratings,
         analysis: &pictures.study,
         figure_svg: &figure(Palette::PAGE),
+        plain_svg: None,
     };
     let mut document = sections.document_of_pictures(&pictures);
     if let Some(predictions) = predictions {
         document.add_before_last(sections.predicted(predictions, None));
     }
     let means = picture_sections::means_csv(study, &pictures);
-    let files = files(&sections, &document, means, figure(Palette::PRINT))?;
+    let figures = vec![(figure_name(study), figure(Palette::PRINT))];
+    let files = files(&sections, &document, means, figures)?;
     Ok(Contents {
         anova_of: pictures.study,
         files,
@@ -183,14 +190,14 @@ fn files(
     sections: &Sections<'_>,
     document: &Document,
     means_csv: String,
-    figure_svg: String,
+    figures: Vec<(&'static str, String)>,
 ) -> Result<Vec<(String, Vec<u8>)>, AnalysisError> {
     let contents = ReportFiles {
         document,
         table: &sections.analysis.table,
         to_paste: sections.to_paste_as_text(),
         means_csv,
-        figure: (figure_name(sections.study), figure_svg),
+        figures,
         observers: (sections.findings().observer_figure(Palette::PRINT))
             .map(|figure| figure.to_svg()),
     };

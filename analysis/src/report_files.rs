@@ -15,8 +15,8 @@ pub(crate) struct ReportFiles<'a> {
     /// The methods paragraph and the sentences.
     pub(crate) to_paste: String,
     pub(crate) means_csv: String,
-    /// The name of the figure, and the figure as SVG for paper.
-    pub(crate) figure: (&'static str, String),
+    /// The name of each figure, and the figure as SVG for paper.
+    pub(crate) figures: Vec<(&'static str, String)>,
     /// The curves of each observer, likewise.
     pub(crate) observers: Option<String>,
 }
@@ -28,8 +28,6 @@ impl ReportFiles<'_> {
     ///
     /// A figure that cannot be drawn.
     pub(crate) fn files(self) -> Result<Vec<(String, Vec<u8>)>, AnalysisError> {
-        let (name, svg) = self.figure;
-        let picture = FigurePicture::new(&svg)?;
         let text = |name: &str, text: String| (name.to_owned(), text.into_bytes());
         let mut files = vec![
             text("report.html", self.document.to_html()),
@@ -42,11 +40,14 @@ impl ReportFiles<'_> {
             text("follow-ups.csv", self.table.follow_ups_csv()),
             text("asymptotes.csv", self.table.asymptotes_csv()),
             text("means.csv", self.means_csv),
-            (format!("{name}.png"), picture.to_png()?),
-            (format!("{name}.pdf"), picture.to_pdf()),
-            text(&format!("{name}-outlined.svg"), picture.to_outlines()),
-            text(&format!("{name}.svg"), svg),
         ];
+        for (name, svg) in self.figures {
+            let picture = FigurePicture::new(&svg)?;
+            files.push((format!("{name}.png"), picture.to_png()?));
+            files.push((format!("{name}.pdf"), picture.to_pdf()));
+            files.push(text(&format!("{name}-outlined.svg"), picture.to_outlines()));
+            files.push(text(&format!("{name}.svg"), svg));
+        }
         if let Some(svg) = self.observers {
             files.push((
                 "observers.png".to_owned(),

@@ -3,7 +3,7 @@
 use protocols::{ChannelGroup, Observer, Study};
 
 use crate::apa;
-use crate::data_sections::figure_name;
+use crate::data_sections::{PLAIN_FIGURE, figure_name};
 use crate::document::{Block, Document, Section, Style, Table};
 use crate::findings::Findings;
 use crate::page::escaped;
@@ -20,6 +20,8 @@ pub(crate) struct Sections<'a> {
     pub(crate) analysis: &'a StudyAnalysis,
     /// Figure 10 in the colours of the page.
     pub(crate) figure_svg: &'a str,
+    /// The same in the published form, where there is one.
+    pub(crate) plain_svg: Option<&'a str>,
 }
 
 impl Sections<'_> {
@@ -173,11 +175,24 @@ impl Sections<'_> {
     }
 
     pub(crate) fn with_figure(&self, caption: String) -> Section {
-        Section::without_heading().block(Block::Figure {
+        let ours = Block::Figure {
             svg: self.figure_svg.to_owned(),
             file: figure_name(self.study).to_owned(),
             caption,
-        })
+        };
+        let Some(svg) = self.plain_svg else {
+            return Section::without_heading().block(ours);
+        };
+        let plain = Block::Figure {
+            svg: svg.to_owned(),
+            file: PLAIN_FIGURE.to_owned(),
+            caption: format!(
+                "<b>Figure 10 in the published form.</b> Image quality rating against the number of spatial samples for \
+                 chrominance (squares) and for luminance (diamonds): the means of {} alone.",
+                self.who()
+            ),
+        };
+        Section::without_heading().block(Block::Beside(vec![plain, ours]))
     }
 
     fn means(&self) -> Section {

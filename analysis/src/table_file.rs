@@ -65,8 +65,16 @@ fn read_table(
     let bytes = fs::read(path).map_err(|error| ReadError::from_io(path, kind, error))?;
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
     let text = text_of(path, bytes)?;
+    let delimiter = delimiter(path, text);
+    if let Some(line) = open_quote(text, delimiter) {
+        let error = InputError::new(path, "a quote that is never closed", "a second quote");
+        let error = error.at(format!("line {line}"));
+        return Err(error
+            .remedy("close it, or write a quote that is meant as \"\"")
+            .into());
+    }
     let mut reader = csv::ReaderBuilder::new()
-        .delimiter(delimiter(path, text))
+        .delimiter(delimiter)
         .from_reader(text.as_bytes());
     let malformed = |error: csv::Error| malformed_row(path, &error);
     let header = reader.headers().map_err(malformed)?.clone();
@@ -140,6 +148,27 @@ fn delimiter(path: &Path, text: &str) -> u8 {
     } else {
         b','
     }
+}
+
+/// The line of a quote that opens a field and is not closed before the end.
+fn open_quote(text: &str, delimiter: u8) -> Option<usize> {
+    if !text.contains('"') {
+        return None;
+    }
+    let (mut line, mut is_start, mut opened) = (1, true, None);
+    let mut bytes = text.bytes().peekable();
+    while let Some(byte) = bytes.next() {
+        let is_quote = byte == b'"';
+        match opened {
+            Some(_) if is_quote && bytes.peek() == Some(&b'"') => _ = bytes.next(),
+            Some(_) if is_quote => opened = None,
+            None if is_quote && is_start => opened = Some(line),
+            _ => {}
+        }
+        is_start = opened.is_none() && (byte == delimiter || byte == b'\n' || byte == b'\r');
+        line += usize::from(byte == b'\n');
+    }
+    opened
 }
 
 fn malformed_row(path: &Path, error: &csv::Error) -> InputError {

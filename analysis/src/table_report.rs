@@ -44,7 +44,7 @@ pub fn report_of_tables(
         table: &numbers.table,
         to_paste: sections.to_paste_as_text(),
         means_csv: numbers.means.to_csv(study.plan.confidence),
-        figure: ("figure", figure(Palette::PRINT)),
+        figures: vec![("figure", figure(Palette::PRINT))],
         observers: (sections.findings().observer_figure(Palette::PRINT))
             .map(|figure| figure.to_svg()),
     };

@@ -254,10 +254,13 @@ impl TableSections<'_> {
         entries.push(("Program", format!("Acuity {}", env!("CARGO_PKG_VERSION"))));
         entries.push((
             "Files",
-            "<code>report.pdf</code>, <code>report.md</code>, <code>tables.tex</code>, <code>to-paste.txt</code>, <code>anova.json</code>, \
-             <code>anova.csv</code>, <code>follow-ups.csv</code>, <code>asymptotes.csv</code>, <code>means.csv</code>, and \
-             <code>figure</code> as <code>.svg</code>, <code>.pdf</code> and <code>.png</code> (300 dpi) beside this page"
-                .to_owned(),
+            format!(
+                "<code>report.pdf</code>, <code>report.md</code>, <code>tables.tex</code>, <code>to-paste.txt</code>, <code>anova.json</code>, \
+                 <code>anova.csv</code>, <code>follow-ups.csv</code>, <code>asymptotes.csv</code>, <code>means.csv</code>, {}\
+                 <code>figure</code> as <code>.svg</code>, <code>-outlined.svg</code>, <code>.pdf</code> and <code>.png</code> (300 dpi) \
+                 beside this page",
+                self.findings().observer_files()
+            ),
         ));
         Section::new("Where this comes from").block(Block::Terms(entries))
     }

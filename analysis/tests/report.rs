@@ -83,6 +83,10 @@ fn every_file_is_written_and_no_other() {
             "anova.json",
             "asymptotes.csv",
             "figure-10-outlined.svg",
+            "figure-10-plain-outlined.svg",
+            "figure-10-plain.pdf",
+            "figure-10-plain.png",
+            "figure-10-plain.svg",
             "figure-10.pdf",
             "figure-10.png",
             "figure-10.svg",
@@ -218,6 +222,36 @@ fn the_picture_is_the_figure_at_300_dots_an_inch() {
     // One square or diamond for each of 14 ray counts, and one in the legend.
     assert_eq!(svg.matches("h9v9h-9z").count(), 15);
     assert_eq!(svg.matches("l6,-6l6,6l-6,6z").count(), 15);
+}
+
+#[test]
+fn the_figure_stands_in_the_published_form_beside_ours() {
+    let trial = Trial::with_people(4);
+    trial.report().unwrap();
+    let svg = fs::read_to_string(trial.out().join("figure-10-plain.svg")).unwrap();
+    assert_eq!(svg.matches("h9v9h-9z").count(), 15);
+    assert_eq!(svg.matches("l6,-6l6,6l-6,6z").count(), 15);
+    // Two curves and two keys, nothing dashed, no bars, no plateaus, one ink.
+    assert_eq!(svg.matches("<polyline").count(), 4);
+    for absent in ["dasharray", "opacity", "c64b00", "interval"] {
+        assert!(!svg.contains(absent), "{absent}");
+    }
+    for number in [">10<", ">140<", "thousands", ">4 subjects<"] {
+        assert!(svg.contains(number), "{number}");
+    }
+    let page = trial.page();
+    let pair = page.split("<div class=\"beside\">").nth(1).unwrap();
+    assert_eq!(
+        pair.split("</div>").next().unwrap().matches("<svg").count(),
+        2
+    );
+    for name in ["figure-10-plain", "observers.svg"] {
+        assert!(page.contains(&format!("<code>{name}</code>")), "{name}");
+    }
+    let markdown = fs::read_to_string(trial.out().join("report.md")).unwrap();
+    let [plain, ours] =
+        ["(figure-10-plain.png)", "(figure-10.png)"].map(|name| markdown.find(name));
+    assert!(plain.unwrap() < ours.unwrap());
 }
 
 #[test]

@@ -147,6 +147,31 @@ fn a_missing_file_is_the_users_to_mend() {
 }
 
 #[test]
+fn a_quote_that_is_never_closed_is_named_where_it_opens() {
+    // The second is in a column that is not read: it would swallow every row below it without a word.
+    for (text, line) in [
+        (PLAIN.replace("2,10K", "\"2,10K"), "line 4"),
+        (
+            format!("{}4,10K,1,\"x\n4,100K,2,y\n", PLAIN.replace('\n', ",x\n")),
+            "line 8",
+        ),
+        (
+            PLAIN
+                .replace("1,10K", "\"a\nb\",10K")
+                .replace("3,10K", "\"\"\"3,10K"),
+            "line 7",
+        ),
+    ] {
+        let message = analyse("open.csv", text.as_bytes(), &design()).unwrap_err();
+        assert!(message.contains("never closed"), "{message}");
+        assert!(message.contains(line), "{message}");
+    }
+    // Inside a field that does not begin with one, a quote is a letter.
+    let inches = PLAIN.replace("10K", "10\"");
+    assert!(analyse("inches.csv", inches.as_bytes(), &design()).is_ok());
+}
+
+#[test]
 fn designs_that_contradict_themselves_are_refused() {
     let wrong = |change: fn(&mut Design)| {
         let mut design = design();

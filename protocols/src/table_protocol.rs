@@ -67,6 +67,17 @@ struct Written {
 const OF_SESSIONS: [&str; 5] = ["stimuli", "viewing", "acuity", "session", "simulation"];
 
 impl TableProtocol {
+    /// Whether a file states an analysis and nothing of sessions, so that it is of no use without tables.
+    #[must_use]
+    pub fn is_of_tables_only(path: &Path) -> bool {
+        let text = fs::read_to_string(path).ok();
+        let written = text.and_then(|text| text.parse::<toml::Table>().ok());
+        written.is_some_and(|written| {
+            written.contains_key("analysis")
+                && !OF_SESSIONS.iter().any(|&key| written.contains_key(key))
+        })
+    }
+
     /// Reads a protocol file for the analysis that it states.
     ///
     /// # Errors
