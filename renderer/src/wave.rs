@@ -192,6 +192,7 @@ mod tests {
             "opponent-solids.toml",
             "soft-spheres.toml",
             "toy-village.toml",
+            "still-life.toml",
         ];
         for file in files {
             let scene = scene(file);
