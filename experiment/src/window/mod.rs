@@ -2,6 +2,8 @@
 
 mod app;
 mod before;
+#[cfg(test)]
+mod by_name;
 mod clock;
 mod desk;
 mod gate;

@@ -9,6 +9,7 @@ use egui_kittest::kittest::Queryable as _;
 use super::*;
 use crate::color_draft::ColorSource;
 use crate::common::small_study;
+use crate::window::by_name::ByName as _;
 use crate::{DisplayColor, Patch};
 
 struct Window {
@@ -47,27 +48,13 @@ fn window() -> Window {
     }
 }
 
-impl Window {
-    fn click(&mut self, name: &str) {
-        self.harness.get_by_label(name).click();
-        self.harness.run_steps(3);
-    }
-
-    fn has(&self, words: &str) -> bool {
-        self.harness
-            .query_all_by_label_contains(words)
-            .next()
-            .is_some()
-    }
-}
-
 #[test]
 fn the_outline_grows_by_the_arrow_keys_and_nothing_is_saved_before() {
     let mut window = window();
-    assert!(window.has("Not measured yet"));
-    window.click("Save and close");
+    assert!(window.harness.has("Not measured yet"));
+    window.harness.click_on("Save and close");
     assert!(window.wishes.borrow().is_empty());
-    window.click("outline of a bank card");
+    window.harness.click_on("outline of a bank card");
     for _ in 0..12 {
         window.harness.key_press(Key::ArrowLeft);
         window.harness.run_steps(1);
@@ -79,9 +66,9 @@ fn the_outline_grows_by_the_arrow_keys_and_nothing_is_saved_before() {
     window.harness.run_steps(2);
     assert_eq!(window.pages.borrow().draft.card_px(), 322.0);
     // 85.60 mm / 322 = 0.2658 mm.
-    assert!(window.has("0.2658 mm"));
-    window.click("HDMI-1");
-    window.click("Save and close");
+    assert!(window.harness.has("0.2658 mm"));
+    window.harness.click_on("HDMI-1");
+    window.harness.click_on("Save and close");
     let wishes = window.wishes.borrow();
     let [Wish::Monitor(1), Wish::Save(station)] = wishes.as_slice() else {
         panic!("{wishes:?}");
@@ -93,35 +80,43 @@ fn the_outline_grows_by_the_arrow_keys_and_nothing_is_saved_before() {
 #[test]
 fn the_distance_follows_from_the_screen_and_says_whether_it_will_do() {
     let mut window = window();
-    window.click("2  Distance");
-    assert!(window.has("First measure the screen"));
+    window.harness.click_on("2  Distance");
+    assert!(window.harness.has("First measure the screen"));
     window.pages.borrow_mut().draft.set_card_px(85.60 / 0.2745);
     window.harness.run_steps(2);
     // 0.02745 / tan(0.019 degrees) = 82.78 cm (bc -l).
-    assert!(window.has("82.8 cm") && window.has("Within the protocol's tolerance of 2 %"));
+    assert!(
+        window.harness.has("82.8 cm")
+            && window.harness.has("Within the protocol's tolerance of 2 %")
+    );
     window.pages.borrow_mut().draft.distance_typed = "60".to_owned();
     window.harness.run_steps(2);
-    assert!(window.has("Outside the protocol's tolerance"));
+    assert!(window.harness.has("Outside the protocol's tolerance"));
 }
 
 #[test]
 fn three_hundred_frames_are_timed() {
     let mut window = window();
-    window.click("3  Refresh");
+    window.harness.click_on("3  Refresh");
     window.harness.run_steps(305);
-    assert!(window.has("16.667 ms (60.00 Hz)") && window.has("Locked to the display's refresh."));
+    assert!(
+        window.harness.has("16.667 ms (60.00 Hz)")
+            && window.harness.has("Locked to the display's refresh.")
+    );
 }
 
 /// The readings are an sRGB display's at 100 cd/m² (D65; Y of the primaries .2126, .7152, .0722).
 #[test]
 fn patches_fill_the_screen_and_take_readings() {
     let mut window = window();
-    window.click("4  Colour");
-    window.click("read patch by patch");
-    window.click("Show the patches on the whole screen");
-    assert!(window.has("white (1 of 12)") && window.has("100.00  0.3127  0.3290"));
-    window.click("Next");
-    assert!(window.has("red (2 of 12)") && window.has("21.26  0.6400  0.3300"));
+    window.harness.click_on("4  Colour");
+    window.harness.click_on("read patch by patch");
+    window
+        .harness
+        .click_on("Show the patches on the whole screen");
+    assert!(window.harness.has("white (1 of 12)") && window.harness.has("100.00  0.3127  0.3290"));
+    window.harness.click_on("Next");
+    assert!(window.harness.has("red (2 of 12)") && window.harness.has("21.26  0.6400  0.3300"));
     let field = window
         .harness
         .get_by_role_and_label(egui::Role::TextInput, "Y (cd/m2)");
@@ -137,27 +132,30 @@ fn patches_fill_the_screen_and_take_readings() {
         let (patch, fields) = &pages.draft.color.readings[1];
         assert_eq!((*patch, fields[0].as_str()), (Patch::PRIMARIES[0], "21.3"));
     }
-    window.click("Close");
+    window.harness.click_on("Close");
     assert!(
-        window.has("What colours does the display give?") && window.has("white is not read yet")
+        window.harness.has("What colours does the display give?")
+            && window.harness.has("white is not read yet")
     );
 }
 
 #[test]
 fn a_bare_patch_has_no_words_until_a_key() {
     let mut window = window();
-    window.click("4  Colour");
-    window.click("Show the patches on the whole screen");
-    window.click("Hide this strip");
-    assert!(!window.has("white (1 of 12)"));
+    window.harness.click_on("4  Colour");
+    window
+        .harness
+        .click_on("Show the patches on the whole screen");
+    window.harness.click_on("Hide this strip");
+    assert!(!window.harness.has("white (1 of 12)"));
     window.harness.key_press(Key::Space);
     window.harness.run_steps(3);
-    assert!(window.has("white (1 of 12)"));
+    assert!(window.harness.has("white (1 of 12)"));
     for _ in 0..12 {
         window.harness.key_press(Key::PageDown);
         window.harness.run_steps(2);
     }
-    assert!(window.has("What colours does the display give?"));
+    assert!(window.harness.has("What colours does the display give?"));
 }
 
 #[test]
@@ -169,10 +167,10 @@ fn the_room_is_compared_with_the_advice() {
         draft.background_typed = "100".to_owned();
         draft.room_typed = "15".to_owned();
     }
-    window.click("5  Room");
-    assert!(window.has("outside the advice of BT.500"));
-    assert!(window.has("25 % of the peak, above the advice"));
-    assert!(window.has("A room of 15 lx is within"));
+    window.harness.click_on("5  Room");
+    assert!(window.harness.has("outside the advice of BT.500"));
+    assert!(window.harness.has("25 % of the peak, above the advice"));
+    assert!(window.harness.has("A room of 15 lx is within"));
 }
 
 #[test]
@@ -180,10 +178,10 @@ fn closing_without_saving_is_asked() {
     let mut window = window();
     window.harness.key_press(Key::Escape);
     window.harness.run_steps(2);
-    window.click("Go on");
+    window.harness.click_on("Go on");
     assert!(window.wishes.borrow().is_empty());
-    window.click("Close");
-    window.click("Close without saving");
+    window.harness.click_on("Close");
+    window.harness.click_on("Close without saving");
     assert_eq!(*window.wishes.borrow(), [Wish::Close]);
     assert_eq!(
         window.pages.borrow().draft.color.source,

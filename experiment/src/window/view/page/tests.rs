@@ -8,6 +8,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::*;
+use crate::window::by_name::ByName as _;
 
 struct View {
     harness: Harness<'static>,
@@ -49,34 +50,23 @@ fn glance() -> Glance {
     }
 }
 
-impl View {
-    fn click(&mut self, name: &str) {
-        self.harness.get_by_label(name).click();
-        self.harness.run_steps(3);
-    }
-
-    fn has(&self, words: &str) -> bool {
-        self.harness
-            .query_all_by_label_contains(words)
-            .next()
-            .is_some()
-    }
-}
-
 #[test]
 fn the_trial_the_image_the_time_and_the_ratings_are_there() {
     let view = view(glance());
-    assert!(view.has("Trial 5 of 30") && view.has("a070k_c140k"));
+    assert!(view.harness.has("Trial 5 of 30") && view.harness.has("a070k_c140k"));
     // 7.4 s were left a second ago; 301 s of the session.
-    assert!(view.has("sees the image between its anchors, 6 s left"));
-    assert!(view.has("about 5 min") && view.has("ratings so far: [0, 10, 4, 6]"));
-    assert!(!view.has("PILOT"));
+    assert!(
+        view.harness
+            .has("sees the image between its anchors, 6 s left")
+    );
+    assert!(view.harness.has("about 5 min") && view.harness.has("ratings so far: [0, 10, 4, 6]"));
+    assert!(!view.harness.has("PILOT"));
 }
 
 #[test]
 fn pause_becomes_resume_while_the_session_rests() {
     let mut view = view(glance());
-    view.click("Pause");
+    view.harness.click_on("Pause");
     let resting = Glance {
         is_resting: true,
         pilot: Some(20.0),
@@ -84,26 +74,26 @@ fn pause_becomes_resume_while_the_session_rests() {
     };
     view.page.borrow_mut().see(resting, 0.0);
     view.harness.run_steps(2);
-    assert!(view.has("PILOT, times 20"));
-    view.click("Resume");
+    assert!(view.harness.has("PILOT, times 20"));
+    view.harness.click_on("Resume");
     assert_eq!(*view.orders.borrow(), [Order::Pause, Order::Resume]);
 }
 
 #[test]
 fn stopping_is_asked_first() {
     let mut view = view(glance());
-    view.click("Stop the session...");
-    view.click("Go on");
+    view.harness.click_on("Stop the session...");
+    view.harness.click_on("Go on");
     assert!(view.orders.borrow().is_empty());
-    view.click("Stop the session...");
-    view.click("Stop now");
+    view.harness.click_on("Stop the session...");
+    view.harness.click_on("Stop now");
     assert_eq!(*view.orders.borrow(), [Order::Stop]);
 }
 
 #[test]
 fn a_note_is_sent_once_and_stays_to_be_seen() {
     let mut view = view(glance());
-    view.click("Add note");
+    view.harness.click_on("Add note");
     assert!(view.orders.borrow().is_empty(), "an empty note");
     let field = view.harness.get_by_role(egui::Role::TextInput);
     field.focus();
@@ -115,5 +105,5 @@ fn a_note_is_sent_once_and_stays_to_be_seen() {
     view.harness.key_press(egui::Key::Enter);
     view.harness.run_steps(3);
     assert_eq!(*view.orders.borrow(), [Order::Note("coughs".to_owned())]);
-    assert!(view.has("noted: coughs"));
+    assert!(view.harness.has("noted: coughs"));
 }
