@@ -131,7 +131,7 @@ impl SessionApp {
             show,
             clock,
             outcome,
-            before: Before::Sizing(Gate::default()),
+            before: Before::Sizing(Gate::new()),
             monitor: Monitor::default(),
             focus: Focus::default(),
             intake_page: IntakePage::default(),

@@ -1,21 +1,24 @@
 //! The gate before the first screen: nothing is shown until the window fills the monitor.
 //!
 //! The first frames of a full-screen window are smaller, and without a window manager the wish for full
-//! screen is ignored. So the gate waits, then asks for the monitor's size itself, then gives up.
+//! screen is ignored. So the gate waits, or does not where nobody would answer, then asks for the monitor's size
+//! itself, then gives up.
 
 use eframe::egui::{Context, Pos2, ViewportCommand};
 
 use super::geometry::Geometry;
+use super::window_manager;
 use crate::ExperimentError;
 
-/// After this long the window is moved and sized by hand.
+/// How long a window manager may take before the window is moved and sized by hand.
 const BY_HAND_S: f64 = 1.0;
 /// After this long the session is not begun.
 const GIVE_UP_S: f64 = 8.0;
 
 /// What stands before the first screen.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Gate {
+    patience_s: f64,
     since_s: Option<f64>,
     is_sized_by_hand: bool,
 }
@@ -63,6 +66,19 @@ impl Sizes {
 }
 
 impl Gate {
+    /// A gate for a window that has just been opened.
+    pub(crate) fn new() -> Self {
+        Self {
+            patience_s: if window_manager::is_there() {
+                BY_HAND_S
+            } else {
+                0.0
+            },
+            since_s: None,
+            is_sized_by_hand: false,
+        }
+    }
+
     /// Whether the window fills the monitor by now.
     ///
     /// # Errors
@@ -84,7 +100,7 @@ impl Gate {
                 monitor_px: sizes.monitor_px,
             });
         }
-        if waited_s > BY_HAND_S && !self.is_sized_by_hand {
+        if waited_s >= self.patience_s && !self.is_sized_by_hand {
             self.is_sized_by_hand = true;
             let monitor = context.input(|input| input.viewport().monitor_size);
             context.send_viewport_cmd(ViewportCommand::OuterPosition(Pos2::ZERO));

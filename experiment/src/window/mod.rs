@@ -16,6 +16,7 @@ mod proof;
 mod screen_watch;
 mod station;
 mod view;
+mod window_manager;
 
 use std::cell::RefCell;
 use std::rc::Rc;

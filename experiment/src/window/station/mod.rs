@@ -80,7 +80,7 @@ pub fn measure_station(
         path: path.to_owned(),
         wanted,
         monitor: Monitor::default(),
-        gate: Gate::default(),
+        gate: Gate::new(),
         clock: Clock::start(),
         outcome: Rc::clone(&outcome),
         is_closing: false,
@@ -276,7 +276,7 @@ impl StationApp {
         match self.pages.show(ui, now_s) {
             Some(Wish::Monitor(index)) => {
                 self.wanted = self.monitor.all().get(index).cloned();
-                self.gate = Gate::default();
+                self.gate = Gate::new();
                 context.request_repaint();
             }
             Some(Wish::Save(station)) => {
