@@ -3,6 +3,8 @@
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 mod display;
+#[path = "window_session/driver_swaps.rs"]
+mod driver_swaps;
 #[path = "window_session/experimenters_view.rs"]
 mod experimenters_view;
 #[path = "window_session/screensaver.rs"]

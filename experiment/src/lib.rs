@@ -49,6 +49,7 @@ mod sitting;
 mod station;
 mod station_draft;
 mod stimulus_set;
+mod swap_log;
 mod timing_log;
 mod view;
 mod window;

@@ -56,6 +56,10 @@ pub enum Noted {
     RatingOnDisk,
     /// The frames before the first screen; the detail says what they were like.
     RefreshMeasured,
+    /// Whether the driver tells when it swapped each frame.
+    SwapWatch,
+    /// An exposure between two swaps of the driver; the detail says how long.
+    ExposureSwapped,
     /// The screenshot was compared with the images.
     PixelsCompared,
     /// The session ended.
@@ -86,6 +90,8 @@ impl Noted {
             Self::Experimenter => "experimenter",
             Self::RatingOnDisk => "rating_on_disk",
             Self::RefreshMeasured => "refresh_measured",
+            Self::SwapWatch => "swap_watch",
+            Self::ExposureSwapped => "exposure_swapped",
             Self::PixelsCompared => "pixels_compared",
             Self::Ended => "ended",
         }

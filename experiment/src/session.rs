@@ -356,9 +356,20 @@ impl Session {
 
     /// Adds to what happened.
     pub fn note(&mut self, event: Noted, at_s: f64, detail: impl Into<String>) {
+        self.note_of(self.trial, event, at_s, detail);
+    }
+
+    /// Adds to what happened in a trial, which need not be the present one.
+    pub(crate) fn note_of(
+        &mut self,
+        trial: usize,
+        event: Noted,
+        at_s: f64,
+        detail: impl Into<String>,
+    ) {
         self.notes.push(Note {
             at_s,
-            trial: self.trial,
+            trial,
             event,
             detail: detail.into(),
         });

@@ -120,6 +120,9 @@ pub(crate) struct Station {
     /// The frames before the first screen.
     #[serde(default)]
     pub(crate) refresh: Option<Refresh>,
+    /// Whether the driver told when it swapped each frame; the table of events then has `exposure_swapped`.
+    #[serde(default)]
+    pub(crate) tells_swaps: bool,
     /// The measured screen and chair.
     #[serde(default)]
     pub(crate) measured: Option<StationFile>,

@@ -81,6 +81,11 @@ impl Display {
         Some(display)
     }
 
+    /// The name by which programs find this screen.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
     /// A program on this screen.
     pub(crate) fn command(&self, program: &str) -> Command {
         let mut command = Command::new(program);

@@ -72,6 +72,7 @@ impl Place {
             monitor: None,
             refresh: None,
             compared_px: 0,
+            tells_swaps: false,
             measured: None,
             out_of_gamut_px: std::collections::BTreeMap::new(),
             white_luminance: None,

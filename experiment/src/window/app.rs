@@ -15,6 +15,7 @@ use super::intake_page::{IntakePage, Looks};
 use super::monitor::Monitor;
 use super::paint::{Brush, Pictures};
 use super::screen_watch::ScreenWatch;
+use super::swap_watch::SwapWatch;
 use super::view::ViewLink;
 use crate::sitting::Sitting;
 use crate::{
@@ -71,6 +72,7 @@ pub(crate) struct Aside {
     /// The experimenter's view, if there is one.
     pub(crate) view: Option<ViewLink>,
     pub(crate) watch: ScreenWatch,
+    pub(crate) swaps: SwapWatch,
     /// Until when the subject's window asks for the keyboard: the view took it when it opened.
     pub(crate) asks_focus_until_s: f64,
 }
@@ -157,11 +159,14 @@ impl SessionApp {
         };
         brush.background();
         self.aside.hear(context, &mut self.sitting, now_s);
+        let session = &mut self.sitting.session;
+        self.aside.swaps.begin(context, session, now_s);
         if !matches!(self.before, Before::Nothing) {
             context.request_repaint();
             context.set_cursor_icon(CursorIcon::None);
             let (sitting, show) = (&mut self.sitting, &self.show);
-            let frame = (&self.monitor, sizes, now_s);
+            let times = (now_s, self.aside.swaps.has_heard());
+            let frame = (&self.monitor, sizes, times);
             if !self.before.frame(sitting, show, &brush, frame)? {
                 let words = "waits: the window is sized and its frames are timed";
                 self.aside.tell(&self.sitting, Some(words), self.clock);
@@ -195,6 +200,7 @@ impl SessionApp {
                 .map(Some);
         }
         draw(&brush, session, &self.show);
+        self.aside.swaps.drawn(session);
         self.sitting.keep_words()?;
         self.aside.tell(&self.sitting, None, self.clock);
         Ok(None)

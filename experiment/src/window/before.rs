@@ -44,7 +44,7 @@ impl Before {
         sitting: &mut Sitting,
         show: &Show,
         brush: &Brush<'_>,
-        (monitor, sizes, now_s): (&Monitor, Sizes, f64),
+        (monitor, sizes, (now_s, tells_swaps)): (&Monitor, Sizes, (f64, bool)),
     ) -> Result<bool, ExperimentError> {
         let context = brush.painter.ctx();
         match self {
@@ -78,6 +78,7 @@ impl Before {
                     let station = Station {
                         compared_px: proof.compared_px(),
                         refresh: Some(*refresh),
+                        tells_swaps,
                         monitor: monitor.name.clone(),
                         measured: show.station.clone(),
                         out_of_gamut_px: show.out_of_gamut_px.clone(),
@@ -88,6 +89,12 @@ impl Before {
                     let session = &mut sitting.session;
                     session.note(Noted::RefreshMeasured, now_s, refresh.in_words());
                     session.note(Noted::PixelsCompared, now_s, compared);
+                    let swaps = if tells_swaps {
+                        "the driver tells when it swapped each frame"
+                    } else {
+                        "the driver does not tell when it swapped a frame: software times"
+                    };
+                    session.note(Noted::SwapWatch, now_s, swaps);
                     sitting.begin(station, now_s)?;
                     *self = Self::Nothing;
                     return Ok(true);
@@ -132,6 +139,7 @@ fn station(sizes: Sizes) -> Station {
     Station {
         monitor: None,
         refresh: None,
+        tells_swaps: false,
         compared_px: 0,
         measured: None,
         out_of_gamut_px: std::collections::BTreeMap::new(),

@@ -15,6 +15,7 @@ mod paint;
 mod proof;
 mod screen_watch;
 mod station;
+mod swap_watch;
 mod view;
 mod window_manager;
 
@@ -33,6 +34,7 @@ use clock::Clock;
 use paint::Pictures;
 use screen_watch::ScreenWatch;
 pub use station::measure_station;
+use swap_watch::SwapWatch;
 use view::ViewLink;
 pub use view::experimenters_view;
 
@@ -85,6 +87,7 @@ pub fn run(study: &Study, options: &RunOptions) -> Result<SessionEnd, Experiment
         let aside = Aside {
             view: view.transpose()?,
             watch: ScreenWatch::start(context.clone()),
+            swaps: SwapWatch::start(creation, clock),
             asks_focus_until_s: 0.0,
         };
         Ok(Box::new(SessionApp::new(
