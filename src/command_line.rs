@@ -291,8 +291,8 @@ pub(crate) struct StationArguments {
     #[arg(long, value_name = "FILE", conflicts_with = "primaries")]
     pub(crate) icc: Option<PathBuf>,
     /// Chromaticities by a colorimeter: x,y of red, green, blue and white.
-    #[arg(long, value_name = "X,Y,...", value_delimiter = ',', num_args = 8)]
-    pub(crate) primaries: Option<Vec<f64>>,
+    #[arg(long, value_name = "X,Y,...", value_parser = chromaticities)]
+    pub(crate) primaries: Option<[f64; 8]>,
     /// Exponent of the measured transfer curve [default: the curve of sRGB]
     #[arg(long, requires = "primaries")]
     pub(crate) gamma: Option<f64>,
@@ -512,6 +512,17 @@ fn threads(text: &str) -> Result<NonZeroUsize, String> {
         .ok()
         .filter(|threads: &NonZeroUsize| threads.get() <= 1024);
     threads.ok_or_else(|| format!("found {text:?} threads, expected a number from 1 to 1024"))
+}
+
+fn chromaticities(text: &str) -> Result<[f64; 8], String> {
+    let numbers: Result<Vec<f64>, _> = text
+        .split(',')
+        .map(|number| number.trim().parse())
+        .collect();
+    let eight = numbers.ok().and_then(|numbers| numbers.try_into().ok());
+    eight.ok_or_else(|| {
+        format!("found {text:?}, expected eight numbers with commas between: x,y of red, green, blue and white")
+    })
 }
 
 fn pilot_speed(text: &str) -> Result<f64, String> {

@@ -1,16 +1,26 @@
-//! Whole sessions in a real window, with a real mouse: what is on the screen, and what is on the disk.
+//! Whole sessions in a real window, with a real mouse and keyboard: what is on the screen, and what is on the disk.
 
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
+#[path = "window_session/attention.rs"]
+mod attention;
 mod display;
 #[path = "window_session/driver_swaps.rs"]
 mod driver_swaps;
 #[path = "window_session/experimenters_view.rs"]
 mod experimenters_view;
+#[path = "window_session/layouts.rs"]
+mod layouts;
+#[path = "window_session/picture_study.rs"]
+mod picture_study;
 #[path = "window_session/screensaver.rs"]
 mod screensaver;
 #[path = "window_session/station_window.rs"]
 mod station_window;
+#[path = "window_session/whole_sessions.rs"]
+mod whole_sessions;
+#[path = "window_session/wrong_pixel.rs"]
+mod wrong_pixel;
 
 use std::fs::{self, OpenOptions};
 use std::io::Write as _;
@@ -20,8 +30,8 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use display::{Display, Manager, SIZE, Screenshot, png_pixels};
+use protocols::Study;
 use protocols::rating::{Phase, RatingRow, read_ratings};
-use protocols::{StimulusPlan, Study};
 
 const PROTOCOL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/protocols/meyer-liu-1992.toml");
 const GREY: [u8; 3] = [128; 3];
@@ -55,20 +65,27 @@ fn is_scale(shot: &Screenshot) -> bool {
     (0..=10).all(has_button) && (0..10).all(has_gap)
 }
 
-/// A folder with the study's stimuli.
+/// A folder with a study's stimuli.
 struct Place {
     folder: tempfile::TempDir,
     study: Study,
 }
 
 impl Place {
+    /// The paper's study.
     fn new() -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        let study = Study::read(Path::new(PROTOCOL)).unwrap();
+        Self::of(tempfile::tempdir().unwrap(), Path::new(PROTOCOL))
+    }
+
+    /// A study of one's own, with its stimuli made in the folder.
+    fn of(folder: tempfile::TempDir, protocol: &Path) -> Self {
+        let study = Study::read(protocol).unwrap();
         let place = Self { folder, study };
         let mut render = Command::new(env!("CARGO_BIN_EXE_acuity"));
         let output = render
-            .args(["-q", "render", PROTOCOL, "--out"])
+            .args(["-q", "render"])
+            .arg(protocol)
+            .arg("--out")
             .arg(place.stimuli())
             .output();
         let output = output.unwrap();
@@ -80,15 +97,36 @@ impl Place {
         self.folder.path().join("stimuli")
     }
 
-    fn ratings(&self, subject: &str) -> PathBuf {
-        let name = format!("study-meyerliu1992_subject-{subject}_session-1_task-pilot_data.csv");
-        self.folder.path().join("data/data").join(name)
+    /// A file of the data set; kinds are `data/..._task-pilot_data.csv` and the like.
+    fn file(&self, subject: &str, [folder, kind]: [&str; 2]) -> PathBuf {
+        let study = self.study.protocol.study.replace('-', "");
+        let name = format!("study-{study}_subject-{subject}_session-1_{kind}");
+        self.folder.path().join("data").join(folder).join(name)
     }
 
-    fn session(&self, display: &Display, subject: &str, speed: &str) -> Command {
+    fn ratings(&self, subject: &str) -> PathBuf {
+        self.file(subject, ["data", "task-pilot_data.csv"])
+    }
+
+    /// How often an event stands in the log.
+    fn count_events(&self, subject: &str, event: &str) -> usize {
+        let events = self.file(subject, ["timing", "task-pilot_events.csv"]);
+        let events = fs::read_to_string(events).unwrap();
+        events.matches(&format!(",{event},")).count()
+    }
+
+    /// A session of its own with a subject, or a trial run so many times faster.
+    fn session<'a>(
+        &self,
+        display: &Display,
+        subject: &str,
+        speed: impl Into<Option<&'a str>>,
+    ) -> Command {
         let mut command = display.command(env!("CARGO_BIN_EXE_acuity"));
         command
-            .args(["run", PROTOCOL, "--subject", subject, "--pilot", speed])
+            .arg("run")
+            .arg(&self.study.path)
+            .args(["--subject", subject])
             .arg("--stimuli")
             .arg(self.stimuli())
             .arg("--data")
@@ -97,12 +135,16 @@ impl Place {
             .env("XDG_CONFIG_HOME", self.folder.path())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped());
+        if let Some(speed) = speed.into() {
+            command.args(["--pilot", speed]);
+        }
         command
     }
 
     fn rows(&self, subject: &str) -> Vec<RatingRow> {
         let path = self.ratings(subject);
-        read_ratings(&path, &StimulusPlan::factors()).unwrap().rows
+        let factors = self.study.protocol.stimuli.factors();
+        read_ratings(&path, &factors).unwrap().rows
     }
 
     /// Waits up to a second for so many rows.

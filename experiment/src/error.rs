@@ -81,18 +81,20 @@ pub enum ExperimentError {
         /// The names that there are.
         all: String,
     },
-    /// The window holds other pixels than the images.
+    /// The window or the screen holds other pixels than the images.
     #[error(
-        "stimulus {stimulus}, pixel {}, {}: the window holds {}, expected {expected:?}; a session is shown only byte for byte: switch off scaling, colour management and compositing effects of the desktop, or use a monitor of 24 bits a pixel",
+        "stimulus {stimulus}, pixel {}, {}: the {holder} holds {}, expected {expected:?}; a session is shown only byte for byte: close what lies in front, switch off scaling, colour management and compositing effects of the desktop, or use a display of 24 bits a pixel",
         place_px[0], place_px[1],
         found.as_ref().map_or_else(|| "nothing".to_owned(), |found| format!("{found:?}"))
     )]
     Pixel {
+        /// What was asked: the window, or the X server's screen.
+        holder: &'static str,
         /// The image.
         stimulus: String,
         /// Where in the image.
         place_px: [usize; 2],
-        /// What the window holds there, if it reaches so far.
+        /// What is held there, if it reaches so far.
         found: Option<Vec<u8>>,
         /// What the image holds there.
         expected: Vec<u8>,

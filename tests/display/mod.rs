@@ -34,6 +34,11 @@ impl Display {
     ///
     /// With `ACUITY_REQUIRE_DISPLAY=1` a missing program fails the test.
     pub(crate) fn open(manager: Manager) -> Option<Self> {
+        Self::of_depth(manager, 24)
+    }
+
+    /// The same with so many bits a pixel.
+    pub(crate) fn of_depth(manager: Manager, bits: u8) -> Option<Self> {
         let missing: Vec<&str> = ["Xvfb", "openbox", "xdotool", "import", "convert"]
             .into_iter()
             .filter(|program| !is_on_path(program))
@@ -47,7 +52,7 @@ impl Display {
             return None;
         }
         let [width, height] = SIZE;
-        let screen = format!("{width}x{height}x24");
+        let screen = format!("{width}x{height}x{bits}");
         let mut server = Command::new("Xvfb")
             .args([
                 "-displayfd",
@@ -96,6 +101,34 @@ impl Display {
     /// Moves the mouse and clicks.
     pub(crate) fn click(&self, [x, y]: [usize; 2]) {
         self.xdotool(&["mousemove", &x.to_string(), &y.to_string(), "click", "1"]);
+    }
+
+    /// Moves the mouse and clicks twice, faster than a frame or two.
+    pub(crate) fn double_click(&self, [x, y]: [usize; 2]) {
+        let twice = ["click", "--repeat", "2", "--delay", "30", "1"];
+        let there = ["mousemove", &x.to_string(), &y.to_string()];
+        self.xdotool(&[&there[..], &twice].concat());
+    }
+
+    /// Moves the mouse.
+    pub(crate) fn move_to(&self, [x, y]: [usize; 2]) {
+        self.xdotool(&["mousemove", &x.to_string(), &y.to_string()]);
+    }
+
+    /// Moves the mouse and holds its button down.
+    pub(crate) fn press(&self, place: [usize; 2]) {
+        self.move_to(place);
+        self.xdotool(&["mousedown", "1"]);
+    }
+
+    /// Lets the mouse's button go.
+    pub(crate) fn release(&self) {
+        self.xdotool(&["mouseup", "1"]);
+    }
+
+    /// Its name, such as `:7`.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
     }
 
     /// Presses and releases a key, by its X11 name.

@@ -53,18 +53,29 @@ struct Focus {
 }
 
 impl Focus {
-    /// Notes when the window loses the keyboard or gets it again.
+    /// Notes when the window loses the keyboard or gets it again, also within one frame.
     fn note(&mut self, context: &egui::Context, session: &mut Session, now_s: f64) {
-        let was_there = std::mem::replace(&mut self.is_there, context.input(|input| input.focused));
         let screen = session.screen();
-        if was_there && !self.is_there {
-            let is_trial = screen == Screen::Blank || screen.picture().is_some();
-            self.losses += u32::from(is_trial);
-            session.note(Noted::FocusLost, now_s, format!("{screen:?}"));
-        } else if !was_there && self.is_there {
-            session.note(Noted::FocusRegained, now_s, format!("{screen:?}"));
+        for is_there in context.input(changes_of_focus) {
+            let was_there = std::mem::replace(&mut self.is_there, is_there);
+            if was_there && !is_there {
+                let is_trial = screen == Screen::Blank || screen.picture().is_some();
+                self.losses += u32::from(is_trial);
+                session.note(Noted::FocusLost, now_s, format!("{screen:?}"));
+            } else if !was_there && is_there {
+                session.note(Noted::FocusRegained, now_s, format!("{screen:?}"));
+            }
         }
     }
+}
+
+/// Whether the window had the keyboard, each time that this changed since the frame before, and now.
+fn changes_of_focus(input: &egui::InputState) -> Vec<bool> {
+    let changes = input.events.iter().filter_map(|event| match event {
+        egui::Event::WindowFocused(is_there) => Some(*is_there),
+        _ => None,
+    });
+    changes.chain([input.focused]).collect()
 }
 
 /// What goes on beside the subject's screen.

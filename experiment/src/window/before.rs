@@ -85,7 +85,7 @@ impl Before {
                         white_luminance: show.display.white_luminance(),
                         ..station(sizes)
                     };
-                    let compared = format!("{} pixels equal", proof.compared_px());
+                    let compared = proof.in_words();
                     let session = &mut sitting.session;
                     session.note(Noted::RefreshMeasured, now_s, refresh.in_words());
                     session.note(Noted::PixelsCompared, now_s, compared);

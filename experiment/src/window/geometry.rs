@@ -34,7 +34,7 @@ pub(crate) fn needed_px(plan: &SessionPlan, image_px: [u32; 2]) -> [u32; 2] {
     };
     let height = match plan.rating {
         RatingTime::AfterExposure => height,
-        // The question stands at 0.78 of the height, with the scale below; the images are in the middle.
+        // The question stands at 0.785 of the height, with the scale below; the images are in the middle.
         RatingTime::DuringExposure => height.saturating_mul(2),
     };
     let of_pages = plan.pages.iter().map(|page| {
@@ -89,7 +89,7 @@ impl Geometry {
 
     /// Where so many pictures of a page stand: in a row, at their own size.
     pub(crate) fn page_pictures(self, count: usize, image_px: Vec2, gap_px: f32) -> Vec<Rect> {
-        let middle = (self.size_px * vec2(0.5, 0.57)).to_pos2();
+        let middle = (self.size_px * vec2(0.5, 0.55)).to_pos2();
         let step = image_px.x + gap_px;
         let first = middle.x - step * (count as f32 - 1.0) / 2.0;
         let place = |index: usize| pos2(first + step * index as f32, middle.y);
@@ -98,10 +98,10 @@ impl Geometry {
             .collect()
     }
 
-    /// The bar that says how much is done.
+    /// The bar that says how much is done: in the upper right corner, where no scale or button ever stands.
     pub(crate) fn progress(self) -> Rect {
-        let middle = (self.size_px * vec2(0.5, 0.9)).to_pos2();
-        centred(middle, vec2(420.0, 10.0) * self.unit())
+        let middle = (self.size_px * vec2(0.9, 0.085)).to_pos2();
+        centred(middle, vec2(200.0, 10.0) * self.unit())
     }
 
     /// The buttons of a screen.
@@ -137,7 +137,7 @@ impl Geometry {
         match (plan.response, plan.rating) {
             (ResponseStyle::Continuous, _) => [0.1, 0.5],
             (_, RatingTime::AfterExposure) => [0.38, 0.5],
-            (_, RatingTime::DuringExposure) => [0.79, 0.87],
+            (_, RatingTime::DuringExposure) => [0.785, 0.86],
         }
     }
 

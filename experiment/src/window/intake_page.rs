@@ -163,7 +163,9 @@ impl Looks<'_> {
         style.spacing.button_padding = vec2(self.points(18.0), self.points(10.0));
         style.spacing.interact_size.y = self.points(52.0);
         style.spacing.combo_width = self.points(420.0);
-        style.spacing.icon_width = self.points(26.0);
+        style.spacing.icon_width = self.points(30.0);
+        style.spacing.icon_width_inner = self.points(24.0);
+        style.spacing.icon_spacing = self.points(10.0);
         let font = FontId::proportional(self.points(28.0));
         for text in style.text_styles.values_mut() {
             *text = font.clone();
@@ -262,6 +264,8 @@ impl Looks<'_> {
         if field.kind == FieldKind::Choice {
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing.x = self.points(36.0);
+                // What has the keyboard has a thicker ring; a bright face would look chosen.
+                ui.visuals_mut().widgets.active.bg_fill = FACE;
                 for choice in &field.choices {
                     let words = self.words(choice, 28.0);
                     ui.radio_value(answer, choice.clone(), words);

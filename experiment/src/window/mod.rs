@@ -14,6 +14,7 @@ mod monitor;
 mod paint;
 mod proof;
 mod screen_watch;
+mod server_screen;
 mod station;
 mod swap_watch;
 mod view;

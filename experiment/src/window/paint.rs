@@ -283,7 +283,9 @@ impl Brush<'_> {
     fn scale(&self, screen: Screen, response: &Response) {
         let texts = &self.plan.texts;
         let [question_y, row_y] = Geometry::scale_heights(self.plan);
-        self.line(&texts.question, 40.0, question_y);
+        let width = 0.64 * self.geometry.size_px.x;
+        let question = self.galley(&texts.question, 40.0, width, Align::Center);
+        self.centred(question, self.place(0.5, question_y));
         let mut field_place = self.place(0.5, row_y + 0.18);
         if self.plan.response == ResponseStyle::Continuous {
             self.bars(response);
@@ -425,12 +427,12 @@ impl Brush<'_> {
             Button::Continue => (texts.continue_button.clone(), 32.0),
             Button::Stop => (texts.stop_button.clone(), 32.0),
             Button::Rating(rating) if self.plan.response == ResponseStyle::Labelled => {
-                (self.label(rating), 27.0)
+                (self.label(rating), 25.0)
             }
             Button::Rating(rating) => (rating.to_string(), 40.0),
             Button::Bar(..) => return,
         };
-        let room = 0.94 * rect_px.width();
+        let room = 0.9 * rect_px.width();
         self.centred(
             self.galley(&words, size, room, Align::Center),
             rect_px.center(),
