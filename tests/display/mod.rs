@@ -126,11 +126,6 @@ impl Display {
         self.xdotool(&["mouseup", "1"]);
     }
 
-    /// Its name, such as `:7`.
-    pub(crate) fn name(&self) -> &str {
-        &self.name
-    }
-
     /// Presses and releases a key, by its X11 name.
     pub(crate) fn key(&self, name: &str) {
         self.xdotool(&["key", name]);
