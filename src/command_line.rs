@@ -287,6 +287,9 @@ pub(crate) struct StationArguments {
     /// Name of the monitor for the experimenter's view.
     #[arg(long, value_name = "NAME")]
     pub(crate) experimenter_monitor: Option<String>,
+    /// Why the monitor runs at another resolution than its own (a cathode-ray tube, a projector); without it no session does.
+    #[arg(long, value_name = "WORDS")]
+    pub(crate) not_native_because: Option<String>,
     /// The monitor's ICC profile (primaries and curves) [default: sRGB by declaration]
     #[arg(long, value_name = "FILE", conflicts_with = "primaries")]
     pub(crate) icc: Option<PathBuf>,

@@ -40,6 +40,7 @@ pub(crate) fn measure(arguments: &StationArguments) -> anyhow::Result<()> {
         background_cd_m2: arguments.background_luminance,
         room_lux: arguments.room_lux,
         experimenter_monitor: arguments.experimenter_monitor.clone(),
+        not_native_because: arguments.not_native_because.clone(),
         screens,
     };
     if arguments.distance_cm.is_none() {

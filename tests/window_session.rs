@@ -2,6 +2,8 @@
 
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
+#[path = "window_session/app_window.rs"]
+mod app_window;
 #[path = "window_session/attention.rs"]
 mod attention;
 mod display;

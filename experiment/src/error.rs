@@ -71,6 +71,28 @@ pub enum ExperimentError {
         /// The one that was measured.
         measured: String,
     },
+    /// The graphics card scales the picture.
+    #[error(
+        "found a desktop of {} x {} pixels that is scaled to the {} x {} of the monitor, expected one pixel of the monitor for each pixel of an image; switch off the fractional scaling of the desktop (100 % or 200 %), or `xrandr --scale 1`",
+        area_px[0], area_px[1], mode_px[0], mode_px[1]
+    )]
+    Scaled {
+        /// The part of the desktop that the monitor shows.
+        area_px: [u32; 2],
+        /// What is sent to the monitor.
+        mode_px: [u32; 2],
+    },
+    /// The monitor does not run at its own resolution.
+    #[error(
+        "found the monitor at {} x {} pixels, expected its own {} x {}; set that in the desktop's settings and measure the station again, or say why this is right (acuity station ... --not-native-because WORDS)",
+        mode_px[0], mode_px[1], native_px[0], native_px[1]
+    )]
+    NotNative {
+        /// What it runs at.
+        mode_px: [u32; 2],
+        /// What it says is its own.
+        native_px: [u32; 2],
+    },
     /// There is no monitor with this name.
     #[error(
         "found the monitors {all}, expected one named \"{wanted}\"; name one of those with --monitor"

@@ -73,7 +73,7 @@ pub use patch::{Patch, Reading};
 pub use picture::{First, Picture};
 pub use prediction::{Prediction, Predictions, predict};
 pub use quality::{Quality, qualities, visible_difference_jod};
-pub use ready::check_ready;
+pub use ready::{check_ready, session_hindrances};
 pub use refresh::Refresh;
 pub use response::Response;
 pub use rules::{Breaks, Rules};

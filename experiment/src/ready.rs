@@ -12,11 +12,19 @@ use crate::{data_set_files, script_fonts, stimulus_set};
 /// Nothing is written but a trial file in the folder that will hold the ratings, which goes away at once.
 pub fn check_ready(study: &Study, stimuli_dir: &Path, data_dir: &Path) -> Vec<String> {
     let mut faults = stimulus_set::faults(study, stimuli_dir);
-    faults.extend(order_fault(study));
+    faults.extend(session_hindrances(study, data_dir));
     faults.extend(script_fonts::text_faults(study));
-    faults.extend(data_fault(study, data_dir));
     faults.extend(display_fault());
     faults
+}
+
+/// What would end a session of `study` before its first screen, beside stimuli, station and display: an order that
+/// cannot be, a data folder that is another study's or takes no file.
+///
+/// Nothing is written but a trial file, as in [`check_ready`].
+pub fn session_hindrances(study: &Study, data_dir: &Path) -> Vec<String> {
+    let faults = [order_fault(study), data_fault(study, data_dir)];
+    faults.into_iter().flatten().collect()
 }
 
 /// Whether the protocol's limits leave the first subject an order.
@@ -45,7 +53,7 @@ fn data_fault(study: &Study, data_dir: &Path) -> Option<String> {
         .tempfile_in(folder);
     tried.err().map(|error| {
         let folder = folder.display();
-        format!("\"{folder}\": found a folder that takes no file ({error}), expected to write the ratings there; name another with --data")
+        format!("\"{folder}\": found a folder that takes no file ({error}), expected to write the ratings there; make it writable for you, or name another with --data")
     })
 }
 

@@ -117,6 +117,9 @@ pub(crate) struct Station {
     pub(crate) pixels_per_point: f32,
     #[serde(default)]
     pub(crate) monitor: Option<String>,
+    /// The monitor's own resolution, if the X server knows it.
+    #[serde(default)]
+    pub(crate) native_px: Option<[u32; 2]>,
     /// The frames before the first screen.
     #[serde(default)]
     pub(crate) refresh: Option<Refresh>,

@@ -40,6 +40,9 @@ pub struct StationFile {
     /// The monitor of the experimenter's view, by its name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub experimenter_monitor: Option<String>,
+    /// Why the monitor runs at another resolution than its own; without it no session does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub not_native_because: Option<String>,
     /// What the display's colours are taken for.
     #[serde(default)]
     pub color: DisplayColor,
@@ -158,6 +161,7 @@ impl StationFile {
     ///     background_cd_m2: None,
     ///     room_lux: None,
     ///     experimenter_monitor: None,
+    ///     not_native_because: None,
     ///     screens: std::collections::BTreeMap::new(),
     /// };
     /// assert!((station.degrees_per_pixel() - 0.019).abs() < 1e-12);
@@ -247,6 +251,7 @@ mod tests {
             background_cd_m2: Some(18.0),
             room_lux: Some(20.0),
             experimenter_monitor: Some("DP-2".to_owned()),
+            not_native_because: Some("a cathode-ray tube".to_owned()),
             screens: BTreeMap::from([(
                 "DP-1".to_owned(),
                 ScreenSize {

@@ -24,6 +24,17 @@ pub(crate) struct ScreenFacts {
     pub(crate) name: Option<String>,
     pub(crate) size_px: [u32; 2],
     pub(crate) nominal_hz: Option<f64>,
+    /// Whether one pixel of an image is one pixel of the monitor, or why not; `None` where nobody knows.
+    pub(crate) one_to_one: Option<Result<(), ModeFault>>,
+}
+
+/// Why a session would refuse a screen as it is now.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct ModeFault {
+    /// Found, expected, and what to do.
+    pub(crate) words: String,
+    /// Whether the station may say why it is right all the same.
+    pub(crate) may_be_right: bool,
 }
 
 /// Whether the angle of a pixel is what the protocol asks for.
@@ -53,6 +64,7 @@ pub(crate) struct StationDraft {
     pub(crate) room_typed: String,
     pub(crate) surround: String,
     pub(crate) experimenter_monitor: Option<String>,
+    pub(crate) not_native_because: String,
     screens: BTreeMap<String, ScreenSize>,
 }
 
@@ -73,6 +85,7 @@ impl StationDraft {
             room_typed: String::new(),
             surround: String::new(),
             experimenter_monitor: None,
+            not_native_because: String::new(),
             screens: BTreeMap::new(),
         };
         if let Some(before) = before {
@@ -91,6 +104,7 @@ impl StationDraft {
             draft.room_typed = text(before.room_lux);
             draft.surround = before.surround.unwrap_or_default();
             draft.experimenter_monitor = before.experimenter_monitor;
+            draft.not_native_because = before.not_native_because.unwrap_or_default();
         }
         draft
     }
@@ -233,17 +247,18 @@ impl StationDraft {
         if let Some(name) = &self.screen.name {
             screens.insert(name.clone(), ScreenSize { width_mm, width_px });
         }
-        let surround = self.surround.trim();
+        let words = |typed: &str| Some(typed.trim().to_owned()).filter(|words| !words.is_empty());
         Ok(StationFile {
             monitor: self.screen.name.clone(),
             width_mm,
             width_px,
             distance_cm: self.distance_cm().map_err(on("Distance"))?,
             peak_luminance_cd_m2: self.peak_cd_m2().map_err(on("Room"))?,
-            surround: (!surround.is_empty()).then(|| surround.to_owned()),
+            surround: words(&self.surround),
             background_cd_m2: self.background_cd_m2().map_err(on("Room"))?,
             room_lux: self.room_lux().map_err(on("Room"))?,
             experimenter_monitor: self.experimenter_monitor.clone(),
+            not_native_because: words(&self.not_native_because),
             color: self.color.color().map_err(on("Colour"))?,
             screens,
         })
@@ -287,6 +302,7 @@ mod tests {
             name: Some(name.to_owned()),
             size_px,
             nominal_hz: Some(60.0),
+            one_to_one: None,
         }
     }
 
@@ -378,6 +394,7 @@ mod tests {
         draft.peak_typed = "120".to_owned();
         draft.surround = " dim ".to_owned();
         draft.distance_typed = "82.8".to_owned();
+        draft.not_native_because = "a tube".to_owned();
         let station = draft.station().unwrap();
         assert_eq!(station.surround.as_deref(), Some("dim"));
         assert_eq!(station.background_cd_m2, Some(16.5));

@@ -57,11 +57,19 @@ impl Fixture {
         renderer::render_set(&study, &folders.stimuli, None, &Watch::UNWATCHED).unwrap();
     }
 
-    /// Whole sessions, where people's stand; says whose.
+    /// Whole sessions, made up to look like people's; says whose.
     pub(crate) fn simulate_people(&self, number: u32) -> Vec<ListedSession> {
         let StudyState { study, folders, .. } = self.state();
         let (stimuli, data) = (&folders.stimuli, &folders.data);
         experiment::simulate(&study, stimuli, data, number, 1, &|_, _| ()).unwrap();
+        let mut files = vec![data.join("dataset_description.json")];
+        let entries = fs::read_dir(data.join("data")).unwrap();
+        files.extend(entries.map(|entry| entry.unwrap().path()));
+        for file in files {
+            let text = fs::read_to_string(&file).unwrap();
+            let text = text.replace("\"simulated\"", "\"person\"");
+            fs::write(&file, text.replace(",simulated,", ",person,")).unwrap();
+        }
         self.state().sessions.sessions
     }
 

@@ -11,10 +11,12 @@ use super::job::{Job, WhenDropped};
 use super::look;
 use super::study_state::StudyState;
 
-/// The longer side of a small image, on the screen.
-const SIDE: f32 = 142.0;
-/// The same in pixels, enough for a screen of twice the usual density.
-const SIDE_PX: usize = 284;
+/// The longer side of a small image, on the screen, at least.
+const SIDE: f32 = 140.0;
+/// Between two of them.
+const GAP: f32 = 11.0;
+/// Its pixels, enough for a screen of twice the usual density.
+const SIDE_PX: usize = 300;
 
 /// A name and its picture.
 type Named<T> = Vec<(String, T)>;
@@ -39,12 +41,11 @@ impl Gallery {
             }
             Some(Err(fault)) => look::facts(ui, fault.rows()),
             Some(Ok(images)) => {
-                ui.horizontal_wrapped(|ui| {
-                    ui.spacing_mut().item_spacing = vec2(11.0, 14.0);
-                    for (name, texture) in images {
-                        captioned(ui, name, texture);
-                    }
-                });
+                let (columns, side) = columns(ui.available_width());
+                ui.spacing_mut().item_spacing = vec2(GAP, 14.0);
+                for images in images.chunks(columns) {
+                    ui.horizontal_top(|ui| row(ui, images, side));
+                }
             }
         });
     }
@@ -72,13 +73,34 @@ impl Gallery {
     }
 }
 
-fn captioned(ui: &mut Ui, name: &str, texture: &TextureHandle) {
+/// How many small images stand side by side in this width, and how large they then are.
+fn columns(width: f32) -> (usize, f32) {
+    let mut count = 1;
+    let mut side = width;
+    while side > SIDE {
+        let next = (width - GAP * count as f32) / (count + 1) as f32;
+        if next < SIDE {
+            break;
+        }
+        (count, side) = (count + 1, next);
+    }
+    (count, side)
+}
+
+fn row(ui: &mut Ui, images: &[(String, TextureHandle)], side: f32) {
+    for (name, texture) in images {
+        captioned(ui, name, (texture, side));
+    }
+}
+
+fn captioned(ui: &mut Ui, name: &str, (texture, side): (&TextureHandle, f32)) {
     let size = texture.size_vec2();
-    let size = size * (SIDE / size.max_elem());
+    let size = size * (side / size.max_elem());
     ui.allocate_ui_with_layout(
-        vec2(SIDE, size.y + 24.0),
+        vec2(side, size.y + 24.0),
         Layout::top_down(Align::Min),
         |ui| {
+            ui.set_width(side);
             ui.spacing_mut().item_spacing.y = 4.0;
             ui.add(
                 Image::from_texture(texture)
@@ -143,6 +165,17 @@ pub(crate) fn small(image: &ScreenImage, side: usize) -> ColorImage {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// 7 of 144.57 and 6 gaps of 11 are 1078; of 660, 4 of 156.75 and 3 gaps.
+    #[test]
+    fn a_row_fills_its_width() {
+        for (width, count) in [(1078.0_f32, 7), (660.0, 4), (150.0, 1), (100.0, 1)] {
+            let (found, side) = columns(width);
+            assert_eq!(found, count, "{width}");
+            let filled = side * count as f32 + GAP * (count - 1) as f32;
+            assert!((filled - width).abs() < 0.01, "{width}: {filled}");
+        }
+    }
 
     #[test]
     fn a_small_image_holds_the_means_of_the_large_one() {

@@ -234,6 +234,16 @@ pub(crate) fn heading(ui: &mut Ui, words: &str) {
     ui.label(text);
 }
 
+/// The title of a page and a line about it.
+pub(crate) fn page_head(ui: &mut Ui, title: &str, words: &str) {
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing.y = 4.0;
+        heading(ui, title);
+        weak(ui, words);
+    });
+    ui.add_space(4.0);
+}
+
 /// The title of a card.
 pub(crate) fn title(ui: &mut Ui, words: &str) {
     ui.label(RichText::new(words).size(18.0));
@@ -314,6 +324,27 @@ pub(crate) fn marked(ui: &mut Ui, kind: Mark, words: &str) {
     ui.label(RichText::new(words).color(color));
 }
 
+/// The state of a step, as the first line of its card.
+pub(crate) fn state(ui: &mut Ui, kind: Mark, words: &str) {
+    ui.scope(|ui| {
+        ui.spacing_mut().interact_size.y = 20.0;
+        ui.horizontal_wrapped(|ui| marked(ui, kind, words));
+    });
+}
+
+/// A box that is ticked or not.
+pub(crate) fn tick(ui: &mut Ui, is_ticked: &mut bool, words: &str) -> Response {
+    let weak = Palette::of(ui).weak;
+    let response = ui.scope(|ui| {
+        // Its edge must be seen beside the card.
+        ui.visuals_mut().widgets.inactive.bg_stroke = Stroke::new(1.0, weak);
+        ui.visuals_mut().widgets.inactive.corner_radius = CornerRadius::same(4);
+        ui.checkbox(is_ticked, words)
+    });
+    focus_ring(ui, &response.inner);
+    response.inner
+}
+
 /// How far something has come, with its number in words for a screen reader.
 pub(crate) fn bar(ui: &mut Ui, size: Vec2, part: f32, name: &str) {
     let palette = Palette::of(ui);
@@ -337,6 +368,25 @@ pub(crate) fn field(ui: &mut Ui, label: &str, text: &mut String, width: f32) -> 
         .desired_width(width)
         .margin(Margin::symmetric(10, 8));
     ui.add(field).labelled_by(name.id)
+}
+
+/// A field with its label in front, in a column of labels of this width.
+pub(crate) fn field_in_column(
+    ui: &mut Ui,
+    label: &str,
+    text: &mut String,
+    [label_width, width]: [f32; 2],
+) -> Response {
+    let size = vec2(label_width, HEIGHT);
+    let layout = Layout::left_to_right(Align::Center);
+    let name = ui.allocate_ui_with_layout(size, layout, |ui| {
+        ui.set_width(label_width);
+        ui.label(label)
+    });
+    let field = egui::TextEdit::singleline(text)
+        .desired_width(width)
+        .margin(Margin::symmetric(10, 8));
+    ui.add(field).labelled_by(name.inner.id)
 }
 
 /// A line across.

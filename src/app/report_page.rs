@@ -65,13 +65,9 @@ impl ReportPage {
     }
 
     pub(crate) fn show(&mut self, ui: &mut Ui, around: Around<'_>) {
-        look::heading(ui, "Report");
         let folder = around.state.folders.report.display();
-        look::weak(
-            ui,
-            &format!("Analysis of variance, figures and tables, in {folder}"),
-        );
-        ui.add_space(6.0);
+        let words = format!("Analysis of variance, figures and tables, in {folder}");
+        look::page_head(ui, "Report", &words);
         if let ReportState::Wrong(fault) = &around.state.report {
             look::fault(ui, fault);
         }
@@ -101,7 +97,7 @@ impl ReportPage {
             return;
         }
         let (mark, words) = around.state.of(Step::Report);
-        ui.horizontal(|ui| look::marked(ui, mark, &words));
+        look::state(ui, mark, &words);
         let is_current = around.state.report == ReportState::Aged(ReportAge::Current);
         let is_there =
             matches!(&around.state.report, ReportState::Aged(age) if *age != ReportAge::NotMade);
@@ -190,13 +186,14 @@ impl ReportPage {
                 ui.ctx().request_repaint();
             }
             Figure::Shown(figure) => {
-                ui.add_space(6.0);
                 let size = figure.size_vec2();
-                let room = vec2(ui.available_width().min(760.0), 520.0);
+                // As much of it as the window shows below the rest of the page.
+                let high = (ui.ctx().content_rect().height() - 415.0).clamp(360.0, 620.0);
+                let room = vec2(ui.available_width(), high);
                 let size = size * (room / size).min_elem();
                 let image = Image::from_texture(figure).fit_to_exact_size(size);
                 let words = "The figure of the report: mean ratings";
-                ui.add(image.corner_radius(4).alt_text(words));
+                ui.vertical_centered(|ui| ui.add(image.corner_radius(4).alt_text(words)));
             }
             Figure::None => {}
         }

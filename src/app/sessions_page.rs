@@ -55,6 +55,7 @@ pub(crate) struct SessionsPage {
     panel: Panel,
     running: Option<Running>,
     outcome: Option<Result<String, Fault>>,
+    view_chosen: Option<bool>,
 }
 
 /// A session to be begun or resumed.
@@ -88,20 +89,18 @@ impl SessionsPage {
     }
 
     pub(crate) fn show(&mut self, ui: &mut Ui, around: Around<'_>) {
-        look::heading(ui, "Sessions");
         let folder = around.state.folders.data.display();
-        look::weak(ui, &format!("One session for each subject, in {folder}"));
-        ui.add_space(6.0);
+        let words = format!("One session for each subject, in {folder}");
+        look::page_head(ui, "Sessions", &words);
         match &self.outcome {
             Some(Err(fault)) => look::fault(ui, fault),
             Some(Ok(said)) => {
-                look::card(ui, |ui| {
-                    ui.horizontal_wrapped(|ui| look::marked(ui, Mark::Done, said))
-                });
+                look::card(ui, |ui| look::state(ui, Mark::Done, said));
             }
             None => {}
         }
-        for fault in &around.state.sessions.faults {
+        let hindrances = &around.state.hindrances;
+        for fault in around.state.sessions.faults.iter().chain(hindrances) {
             look::fault(ui, fault);
         }
         look::card(ui, |ui| self.head(ui, around));
@@ -146,6 +145,7 @@ impl SessionsPage {
             ui.ctx().request_repaint_after(wait);
             return;
         }
+        let is_starting = !matches!(self.panel, Panel::Close { .. });
         match std::mem::take(&mut self.panel) {
             Panel::Buttons => self.buttons(ui, around),
             Panel::Next { code, is_fresh } => self.next(ui, around, code, is_fresh.into()),
@@ -156,11 +156,35 @@ impl SessionsPage {
             } => self.pilot(ui, around, (code, speed), is_fresh.into()),
             Panel::Close { session, reason } => self.close(ui, around, session, reason),
         }
+        if is_starting && self.running.is_none() {
+            self.view_choice(ui, around);
+        }
+    }
+
+    /// Whether the sessions that are begun have an experimenter's view: as the station says, unless it is chosen here.
+    fn has_view(&self, around: Around<'_>) -> bool {
+        let is_noted = view_monitor(around).is_some();
+        self.view_chosen.unwrap_or(is_noted)
+    }
+
+    fn view_choice(&mut self, ui: &mut Ui, around: Around<'_>) {
+        let mut has_view = self.has_view(around);
+        let words = "Experimenter's view in a second window";
+        if look::tick(ui, &mut has_view, words).changed() {
+            self.view_chosen = Some(has_view);
+        }
+        if has_view {
+            let words = match view_monitor(around) {
+                Some(monitor) => format!("On the monitor {monitor}, as the station says."),
+                None => "On the subject's own monitor it lies behind their window, and Alt-Tab fetches it; the page Station can name another.".to_owned(),
+            };
+            look::weak(ui, &words);
+        }
     }
 
     fn buttons(&mut self, ui: &mut Ui, around: Around<'_>) {
         let (mark, words) = around.state.of(Step::Sessions);
-        ui.horizontal(|ui| look::marked(ui, mark, &words));
+        look::state(ui, mark, &words);
         let hindrance = around.hold.or_else(|| around.state.hindrance());
         let may_start = Enabled::from(hindrance.is_none());
         ui.horizontal(|ui| {
@@ -204,7 +228,7 @@ impl SessionsPage {
                 start.request_focus();
             }
             is_started |= start.clicked();
-            is_left = look::secondary(ui, Enabled::Yes, "Cancel").clicked();
+            is_left = left(ui, "Cancel");
         });
         match subject {
             Some(subject) if is_started => {
@@ -256,7 +280,7 @@ impl SessionsPage {
                 start.request_focus();
             }
             is_started = start.clicked();
-            is_left = look::secondary(ui, Enabled::Yes, "Cancel").clicked();
+            is_left = left(ui, "Cancel");
         });
         match (subject, factor) {
             (Some(subject), Some(factor)) if is_started => {
@@ -304,7 +328,7 @@ impl SessionsPage {
         let (mut is_closed, mut is_left) = (false, false);
         ui.horizontal(|ui| {
             is_closed = look::primary(ui, may_close, "Close the session").clicked();
-            is_left = look::secondary(ui, Enabled::Yes, "Leave it open").clicked();
+            is_left = left(ui, "Leave it open");
         });
         if is_closed {
             let mut words = command("close", around, subject, *sitting);
@@ -321,10 +345,8 @@ impl SessionsPage {
         if let Some(speed) = wanted.pilot {
             words.extend(["--pilot".into(), speed.to_string().into()]);
         }
-        if let StationState::Measured(station) = &around.state.station {
-            // Where the station names a monitor for it, the experimenter sees the session too.
-            let view = station.experimenter_monitor.as_ref();
-            words.extend(view.map(|_monitor| "--experimenter".into()));
+        if self.has_view(around) {
+            words.push("--experimenter".into());
         }
         let what = match wanted.pilot {
             Some(_) => "Trial run",
@@ -354,6 +376,20 @@ fn command(word: &str, around: Around<'_>, subject: &SubjectId, session: u32) ->
         "--session".into(),
         session.to_string().into(),
     ]
+}
+
+/// The monitor that the station names for the experimenter's view.
+fn view_monitor(around: Around<'_>) -> Option<&str> {
+    match &around.state.station {
+        StationState::Measured(station) => station.experimenter_monitor.as_deref(),
+        _ => None,
+    }
+}
+
+/// The way back to the buttons, which the key Escape goes too.
+fn left(ui: &mut Ui, words: &str) -> bool {
+    let is_pressed = look::secondary(ui, Enabled::Yes, words).clicked();
+    is_pressed || ui.input(|input| input.key_pressed(Key::Escape))
 }
 
 /// What a process came to, in words.

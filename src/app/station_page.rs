@@ -48,14 +48,12 @@ impl StationPage {
     }
 
     pub(crate) fn show(&mut self, ui: &mut Ui, around: Around<'_>) -> Asked {
-        look::heading(ui, "Station");
         let viewing = around.state.study.protocol.viewing;
         let words = format!(
             "This computer's screen and chair. The protocol wants a pixel to subtend {}\u{b0}.",
             viewing.degrees_per_pixel
         );
-        look::weak(ui, &words);
-        ui.add_space(6.0);
+        look::page_head(ui, "Station", &words);
         if let Some(fault) = &self.fault {
             look::fault(ui, fault);
         }
@@ -67,7 +65,13 @@ impl StationPage {
         }
         look::card(ui, |ui| {
             let (mark, words) = around.state.of(Step::Station);
-            ui.horizontal(|ui| look::marked(ui, mark, &words));
+            look::state(ui, mark, &words);
+            if !matches!(around.state.station, StationState::Measured(_)) {
+                look::weak(
+                    ui,
+                    "A bank card and a few minutes do: its window fills the screen that is measured, page by page.",
+                );
+            }
             if let StationState::Measured(station) = &around.state.station {
                 ui.add_space(4.0);
                 look::facts(ui, &facts(station, around));
@@ -109,19 +113,25 @@ impl StationPage {
             ui,
             "The width of the picture on the screen, without the frame, and the pixels of that width.",
         );
-        ui.horizontal(|ui| {
-            look::field(ui, "Width in mm", &mut form.width_mm, 90.0);
-            ui.add_space(14.0);
-            look::field(ui, "Width in pixels", &mut form.width_px, 90.0);
-        });
-        ui.horizontal(|ui| {
-            look::field(ui, "Distance of the eye in cm", &mut form.distance_cm, 90.0);
-            look::weak(ui, "empty: where a pixel subtends the protocol's angle");
-        });
-        ui.horizontal(|ui| {
-            look::field(ui, "Name of the monitor", &mut form.monitor, 180.0);
-            look::weak(ui, "empty: the one that the desktop chooses");
-        });
+        for (label, text, remark) in [
+            ("Width in mm", &mut form.width_mm, ""),
+            ("Width in pixels", &mut form.width_px, ""),
+            (
+                "Distance of the eye in cm",
+                &mut form.distance_cm,
+                "empty: where a pixel subtends the protocol's angle",
+            ),
+            (
+                "Name of the monitor",
+                &mut form.monitor,
+                "empty: the one that the desktop chooses",
+            ),
+        ] {
+            ui.horizontal(|ui| {
+                look::field_in_column(ui, label, text, [190.0, 130.0]);
+                look::weak(ui, remark);
+            });
+        }
         let before = match &around.state.station {
             StationState::Measured(station) => Some(&**station),
             _ => None,
@@ -193,6 +203,7 @@ impl Form {
             background_cd_m2: None,
             room_lux: None,
             experimenter_monitor: None,
+            not_native_because: None,
             color: DisplayColor::Srgb,
             screens: BTreeMap::new(),
         });

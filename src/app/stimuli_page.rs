@@ -51,9 +51,7 @@ impl StimuliPage {
     }
 
     pub(crate) fn show(&mut self, ui: &mut Ui, around: Around<'_>) {
-        look::heading(ui, "Stimuli");
-        look::weak(ui, &what_is_made(around.state));
-        ui.add_space(6.0);
+        look::page_head(ui, "Stimuli", &what_is_made(around.state));
         look::card(ui, |ui| self.state(ui, around));
         match &self.outcome {
             Some(Outcome::Failed(fault)) => look::fault(ui, fault),
@@ -88,7 +86,7 @@ impl StimuliPage {
             return;
         }
         let (mark, words) = around.state.of(super::study_state::Step::Stimuli);
-        ui.horizontal(|ui| look::marked(ui, mark, &words));
+        look::state(ui, mark, &words);
         if let Some(Outcome::Stopped { rays, of_rays }) = self.outcome {
             let words = format!(
                 "Stopped after {rays} of {of_rays} rays. They are kept: the next run goes on from there."

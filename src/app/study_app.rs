@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use eframe::egui::{
     self, Align, Button, CentralPanel, Context, Frame, Key, KeyboardShortcut, Layout, Margin,
-    Modifiers, Panel, RichText, ScrollArea, Stroke, Theme, Ui,
+    Modifiers, Panel, Rect, RichText, ScrollArea, Stroke, StrokeKind, Theme, Ui,
 };
 
 use super::desk::Desk;
@@ -20,10 +20,12 @@ use super::settings::{Settings, ThemeChoice};
 use super::study_state::{Place, Step};
 use super::welcome_page::WelcomePage;
 
-/// The widths of the button for another study, of a theme, and of all that stands to the right of the title.
+/// The widths of the button for another study, of the word before the themes, of a theme, and of all of them.
 const OTHER_STUDY: f32 = 130.0;
+const WORD: f32 = 84.0;
 const THEME: f32 = 76.0;
-const SWITCHES: f32 = OTHER_STUDY + 3.0 * THEME + 104.0;
+const SWITCHES: f32 = OTHER_STUDY + WORD + 3.0 * THEME;
+const HEIGHT: f32 = 36.0;
 
 /// The app.
 pub(crate) struct StudyApp {
@@ -93,7 +95,8 @@ impl StudyApp {
         let head = Frame::new()
             .fill(palette.card)
             .stroke(Stroke::new(1.0, palette.line))
-            .inner_margin(Margin::symmetric(24, 10));
+            // The line around takes the twenty-fourth point.
+            .inner_margin(Margin::symmetric(23, 10));
         Panel::top("head")
             .frame(head)
             .show_separator_line(false)
@@ -111,18 +114,19 @@ impl StudyApp {
     fn head(&mut self, ui: &mut Ui) {
         let mut is_left = false;
         ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 0.0;
             let title = self.desk.as_ref().and_then(Desk::title).unwrap_or("Acuity");
             let title = RichText::new(title).size(17.0);
             let room = (ui.available_width() - SWITCHES).max(100.0);
             ui.allocate_ui_with_layout(
-                egui::vec2(room, 36.0),
+                egui::vec2(room, HEIGHT),
                 Layout::left_to_right(Align::Center),
                 |ui| {
                     ui.set_width(room);
                     ui.add(egui::Label::new(title).truncate());
                 },
             );
-            let size = egui::vec2(OTHER_STUDY, 36.0);
+            let size = egui::vec2(OTHER_STUDY, HEIGHT);
             ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
                 ui.set_width(OTHER_STUDY);
                 if let Some(desk) = &self.desk {
@@ -139,14 +143,20 @@ impl StudyApp {
     }
 
     fn theme_switch(&mut self, ui: &mut Ui) {
-        ui.add_space(14.0);
-        look::weak(ui, "Theme");
-        ui.spacing_mut().item_spacing.x = 4.0;
+        let layout = Layout::left_to_right(Align::Center);
+        ui.allocate_ui_with_layout(egui::vec2(WORD, HEIGHT), layout, |ui| {
+            ui.set_width(WORD);
+            ui.add_space(20.0);
+            look::weak(ui, "Theme");
+        });
+        let edge = Rect::from_min_size(ui.cursor().min, egui::vec2(3.0 * THEME, HEIGHT));
+        let line = Stroke::new(1.0, Palette::of(ui).line);
+        ui.painter().rect_stroke(edge, 7, line, StrokeKind::Inside);
         ui.spacing_mut().button_padding.x = 4.0;
         for choice in ThemeChoice::ALL {
             let is_chosen = self.settings.theme == choice;
             let button = Button::selectable(is_chosen, choice.word());
-            let response = ui.add(button.min_size(egui::vec2(THEME, 36.0)));
+            let response = ui.add(button.min_size(egui::vec2(THEME, HEIGHT)));
             look::focus_ring(ui, &response);
             let response = response.accessible_name(format!("Theme: {}", choice.word()));
             if response.clicked() && !is_chosen {

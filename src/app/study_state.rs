@@ -135,6 +135,8 @@ pub(crate) struct StudyState {
     pub(crate) station: StationState,
     pub(crate) sessions: SessionsState,
     pub(crate) report: ReportState,
+    /// What else would end a session before its first screen.
+    pub(crate) hindrances: Vec<Fault>,
     /// The report of simulated observers, if there is one.
     pub(crate) simulated_page: Option<PathBuf>,
 }
@@ -146,7 +148,12 @@ impl StudyState {
         let folders = Folders::below(&place.root, &study);
         let sessions = SessionsState::read(&study, &folders.data);
         let simulated_page = folders.simulated_report.join("report.html");
+        let hindrances = experiment::session_hindrances(&study, &folders.data);
         Ok(Self {
+            hindrances: hindrances
+                .iter()
+                .map(|line| Fault::of_words(line))
+                .collect(),
             stimuli: StimuliState::read(&study, &folders.stimuli),
             station: StationState::read(&study, place.station.as_deref()),
             report: ReportState::read(&study, &folders, &sessions),
@@ -184,6 +191,9 @@ impl StudyState {
             }
             StationState::Unfit(_) => {
                 Some("Mend the station first: as it is, the protocol does not allow a session.")
+            }
+            _ if !self.hindrances.is_empty() => {
+                Some("Mend what is said above first: no session could begin.")
             }
             _ => None,
         }

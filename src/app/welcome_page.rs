@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use eframe::egui::{Align, Button, Key, Layout, RichText, TextStyle, Ui, vec2};
+use eframe::egui::{Align, Atom, Button, Key, Layout, RichText, TextStyle, Ui, vec2};
 use protocols::Study;
 
 use super::fault::Fault;
@@ -61,13 +61,11 @@ impl WelcomePage {
     /// The page; says which protocol is to be opened.
     pub(crate) fn show(&mut self, ui: &mut Ui, root: &Path, recent: &[PathBuf]) -> Option<PathBuf> {
         self.take(ui, root, recent);
-        look::heading(ui, "Which study?");
         let words = format!(
             "Stimuli, data and reports are kept below {}",
             root.display()
         );
-        look::weak(ui, &words);
-        ui.add_space(6.0);
+        look::page_head(ui, "Which study?", &words);
         let mut chosen = None;
         match &self.offers {
             None => {
@@ -139,8 +137,8 @@ fn list(ui: &mut Ui, title: &str, offers: &[Offer]) -> Option<PathBuf> {
             vec2(ui.available_width(), 0.0),
             Layout::left_to_right(Align::Center),
             |ui| {
-                let button = Button::new(name.as_ref()).min_size(vec2(300.0, 36.0));
-                let button = ui.add(button.wrap());
+                let button = Button::new((name.as_ref(), Atom::grow()));
+                let button = ui.add(button.min_size(vec2(300.0, 36.0)).wrap());
                 look::focus_ring(ui, &button);
                 let words = RichText::new(words)
                     .text_style(TextStyle::Small)

@@ -70,6 +70,7 @@ impl Place {
             monitor_px: [1, 1],
             pixels_per_point: 1.0,
             monitor: None,
+            native_px: None,
             refresh: None,
             compared_px: 0,
             tells_swaps: false,

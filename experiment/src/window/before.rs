@@ -53,6 +53,9 @@ impl Before {
                 if is_there && gate.is_open(context, sizes, now_s)? {
                     check_fit(needed_px(&show.plan, show.pictures.image_px), sizes)?;
                     check_station(show.station.as_ref(), monitor, sizes)?;
+                    if let Some(mode) = monitor.mode() {
+                        mode.check(show.station.as_ref())?;
+                    }
                     *self = Self::Timing { began: vec![now_s] };
                 }
             }
@@ -80,6 +83,7 @@ impl Before {
                         refresh: Some(*refresh),
                         tells_swaps,
                         monitor: monitor.name.clone(),
+                        native_px: monitor.mode().and_then(|mode| mode.native),
                         measured: show.station.clone(),
                         out_of_gamut_px: show.out_of_gamut_px.clone(),
                         white_luminance: show.display.white_luminance(),
@@ -138,6 +142,7 @@ fn check_station(
 fn station(sizes: Sizes) -> Station {
     Station {
         monitor: None,
+        native_px: None,
         refresh: None,
         tells_swaps: false,
         compared_px: 0,

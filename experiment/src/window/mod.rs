@@ -13,6 +13,7 @@ mod intake_page;
 mod monitor;
 mod paint;
 mod proof;
+mod screen_mode;
 mod screen_watch;
 mod server_screen;
 mod station;

@@ -2,6 +2,7 @@
 
 use eframe::egui::{Context, ViewportCommand};
 
+use super::screen_mode::ScreenMode;
 use crate::ExperimentError;
 
 /// What the window system says of the monitor.
@@ -31,6 +32,11 @@ impl Monitor {
                 .map(|monitor| monitor.name().unwrap_or_default())
                 .collect(),
         }
+    }
+
+    /// The mode that it runs; `None` if the X server does not say.
+    pub(crate) fn mode(&self) -> Option<ScreenMode> {
+        ScreenMode::of(self.name.as_deref()?)
     }
 
     /// The names of all monitors, in the order of the window system.

@@ -11,6 +11,10 @@ use eframe::egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
+mod faults;
+mod keyboard;
+mod view;
+
 use super::*;
 use crate::app::fixture::Fixture;
 use crate::app::launcher::Ended;
@@ -149,6 +153,13 @@ impl User<'_> {
         field.focus();
         field.type_text(text);
         self.harness.run_steps(3);
+    }
+
+    /// The right edge of everything on the page.
+    fn rightmost(&self) -> f64 {
+        let nodes = self.harness.root().children_recursive();
+        let boxes = nodes.filter_map(|node| node.accesskit_node().bounding_box());
+        boxes.map(|found| found.x1).fold(0.0, f64::max)
     }
 
     fn is_enabled(&self, name: &str) -> bool {
@@ -333,7 +344,7 @@ fn data_that_cannot_be_analysed_are_explained() {
     let sessions = fixture.simulate_people(3);
     let path = &sessions[0].ratings_path;
     let text = std::fs::read_to_string(path).unwrap();
-    std::fs::write(path, text.replacen(",simulated,", ",robot,", 1)).unwrap();
+    std::fs::write(path, text.replacen(",person,", ",robot,", 1)).unwrap();
     let mut user = User::with(&fixture);
     for step in ["Sessions", "Report"] {
         user.go(step);
@@ -402,8 +413,9 @@ fn a_station_is_typed_and_written() {
 #[test]
 fn every_page_is_whole_at_three_sizes_in_both_themes() {
     let fixture = ready();
-    fixture.simulate_people(2);
+    let sessions = fixture.simulate_people(3);
     fixture.make_report();
+    Fixture::cut_to(&sessions[1], 12);
     for size in [[1280.0, 800.0], [1920.0, 1080.0], [800.0, 500.0]] {
         let mut user = User::with(&fixture);
         user.harness.set_size(size.into());
@@ -413,10 +425,25 @@ fn every_page_is_whole_at_three_sizes_in_both_themes() {
                 user.go(step.name());
                 // The harness itself refuses widgets without a name and letters without a glyph.
                 user.harness.run_steps(2);
-                let tabs = user.harness.query_all_by_role(Role::Tab);
-                let right = tabs.map(|tab| tab.rect().right()).fold(0.0, f32::max);
-                assert!(right <= size[0], "{step:?} at {size:?}");
+                assert!(
+                    user.rightmost() <= f64::from(size[0]),
+                    "{step:?} at {size:?}"
+                );
             }
         }
+    }
+}
+
+/// The theme switch ends where the steps end.
+#[test]
+fn head_and_steps_end_on_one_line() {
+    let fixture = Fixture::new();
+    for width in [800.0, 1280.0, 1920.0] {
+        let mut user = User::with(&fixture);
+        user.harness.set_size([width, 800.0].into());
+        user.harness.run_steps(3);
+        let right = |name: &str| user.harness.get_by_label_contains(name).rect().right();
+        let (head, steps) = (right("Theme: Dark"), right("Report:"));
+        assert!((head - steps).abs() < 0.1, "{width}: {head} and {steps}");
     }
 }

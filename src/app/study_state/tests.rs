@@ -82,6 +82,7 @@ fn a_station_is_measured_unfit_or_missing() {
         background_cd_m2: None,
         room_lux: None,
         experimenter_monitor: None,
+        not_native_because: None,
         screens: std::collections::BTreeMap::new(),
     };
     station.write(&path).unwrap();

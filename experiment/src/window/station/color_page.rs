@@ -97,10 +97,9 @@ fn typed(ui: &mut Ui, color: &mut ColorDraft) {
                 .into_iter()
                 .zip(&mut color.chromaticities)
             {
-                let label = ui.label(name);
-                for field in fields {
-                    let edit = egui::TextEdit::singleline(field).min_size(vec2(86.0, 0.0));
-                    ui.add(edit).labelled_by(label.id);
+                ui.label(name);
+                for (field, axis) in fields.iter_mut().zip(["x", "y"]) {
+                    cell(ui, field, format!("{name}, {axis}"));
                 }
                 ui.end_row();
             }
@@ -146,12 +145,11 @@ fn table(ui: &mut Ui, draft: &mut StationDraft, fit: Option<&Fit>) {
             }
             ui.end_row();
             for ((patch, fields), expected) in draft.color.readings.iter_mut().zip(expected) {
-                let label = ui.label(patch.name());
+                ui.label(patch.name());
                 ui.monospace(values(expected));
                 if takes_readings {
-                    for field in fields {
-                        let edit = egui::TextEdit::singleline(field).min_size(vec2(86.0, 0.0));
-                        ui.add(edit).labelled_by(label.id);
+                    for (field, axis) in fields.iter_mut().zip(["Y", "x", "y"]) {
+                        cell(ui, field, format!("{}, {axis}", patch.name()));
                     }
                     let mut residuals = fit.iter().flat_map(|fit| &fit.residuals);
                     if let Some(residual) = residuals.find(|residual| residual.patch == *patch) {
@@ -166,6 +164,12 @@ fn table(ui: &mut Ui, draft: &mut StationDraft, fit: Option<&Fit>) {
                 ui.end_row();
             }
         });
+}
+
+/// A field of a table, which a screen reader knows by this name.
+fn cell(ui: &mut Ui, text: &mut String, name: String) {
+    let edit = egui::TextEdit::singleline(text).min_size(vec2(86.0, 0.0));
+    _ = ui.add(edit).accessible_name(name);
 }
 
 /// A reading in words: `100.00  .3127  .3290`.

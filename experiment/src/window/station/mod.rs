@@ -20,7 +20,7 @@ use super::clock::Clock;
 use super::gate::{Gate, Sizes};
 use super::monitor::Monitor;
 use super::{desk, full_screen, open};
-use crate::station_draft::{ScreenFacts, StationDraft};
+use crate::station_draft::{ModeFault, ScreenFacts, StationDraft};
 use crate::{ExperimentError, StationFile};
 use refresh_page::Timing;
 
@@ -82,6 +82,7 @@ pub fn measure_station(
         monitor: Monitor::default(),
         gate: Gate::new(),
         clock: Clock::start(),
+        asked: None,
         outcome: Rc::clone(&outcome),
         is_closing: false,
     };
@@ -233,6 +234,13 @@ impl Pages {
     }
 }
 
+/// What the X server said of a monitor of this name and size.
+struct Asked {
+    name: Option<String>,
+    size_px: [u32; 2],
+    one_to_one: Option<Result<(), ModeFault>>,
+}
+
 /// The window.
 struct StationApp {
     pages: Pages,
@@ -241,6 +249,7 @@ struct StationApp {
     monitor: Monitor,
     gate: Gate,
     clock: Clock,
+    asked: Option<Asked>,
     outcome: Outcome,
     /// The window is on its way out.
     is_closing: bool,
@@ -250,6 +259,28 @@ impl StationApp {
     fn close(&mut self, context: &egui::Context) {
         self.is_closing = true;
         context.send_viewport_cmd(ViewportCommand::Close);
+    }
+
+    /// Whether sessions could be shown here one to one; the X server is asked once for each monitor and size.
+    fn one_to_one(&mut self, sizes: Sizes) -> Option<Result<(), ModeFault>> {
+        let (name, size_px) = (&self.monitor.name, sizes.monitor_px);
+        if let Some(asked) = &self.asked
+            && (&asked.name, asked.size_px) == (name, size_px)
+        {
+            return asked.one_to_one.clone();
+        }
+        let mode = self.monitor.mode();
+        let fault = |error: ExperimentError| ModeFault {
+            may_be_right: matches!(error, ExperimentError::NotNative { .. }),
+            words: error.to_string(),
+        };
+        let one_to_one = mode.map(|mode| mode.check(None).map_err(fault));
+        self.asked = Some(Asked {
+            name: name.clone(),
+            size_px,
+            one_to_one: one_to_one.clone(),
+        });
+        one_to_one
     }
 
     fn frame(&mut self, ui: &mut Ui) -> Result<(), ExperimentError> {
@@ -264,10 +295,12 @@ impl StationApp {
         desk::scale(&context, sizes);
         self.wanted = None;
         self.pages.monitors = self.monitor.all().to_vec();
+        let one_to_one = self.one_to_one(sizes);
         self.pages.draft.stand_on(ScreenFacts {
             name: self.monitor.name.clone(),
             size_px: sizes.monitor_px,
             nominal_hz: self.monitor.nominal_hz,
+            one_to_one,
         });
         if context.input(|input| input.viewport().close_requested()) {
             context.send_viewport_cmd(ViewportCommand::CancelClose);

@@ -167,11 +167,30 @@ fn numbers(ui: &mut Ui, draft: &mut StationDraft) {
     } else {
         desk::bad(ui, "Not measured yet");
     }
+    one_to_one(ui, draft);
+}
+
+/// Whether one pixel of an image is one pixel of the monitor.
+fn one_to_one(ui: &mut Ui, draft: &mut StationDraft) {
     let shown = ui.ctx().native_pixels_per_point().unwrap_or(1.0);
-    desk::remark(
-        ui,
-        format!(
-            "The desktop scales by {shown}; sessions show one image pixel on one pixel of the screen all the same. Check that the resolution is the monitor's own."
-        ),
+    let words = format!(
+        "The desktop scales words by {shown}; sessions show one image pixel on one pixel of the screen all the same."
     );
+    desk::remark(ui, words);
+    match draft.screen().one_to_one.clone() {
+        Some(Ok(())) => desk::good(ui, "The monitor runs at its own resolution."),
+        Some(Err(fault)) => {
+            desk::bad(ui, format!("No session starts like this: {}", fault.words));
+            if fault.may_be_right {
+                let because = &mut draft.not_native_because;
+                desk::facts(ui, "mode", |ui| {
+                    desk::field(ui, "why it is right", because, (220.0, ""))
+                });
+            }
+        }
+        None => desk::remark(
+            ui,
+            "The X server does not say whether this is the monitor's own resolution: look into the monitor's menu.",
+        ),
+    }
 }

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use eframe::egui::vec2;
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 use super::*;
 use crate::color_draft::ColorSource;
@@ -28,6 +28,7 @@ fn window() -> Window {
         name: Some("DP-1".to_owned()),
         size_px: [1920, 1080],
         nominal_hz: Some(60.0),
+        one_to_one: None,
     });
     let pages = Rc::new(RefCell::new(pages));
     let wishes = Rc::new(RefCell::new(Vec::new()));
@@ -187,4 +188,130 @@ fn closing_without_saving_is_asked() {
         window.pages.borrow().draft.color.source,
         ColorSource::Declared
     );
+}
+
+#[test]
+fn a_screen_that_is_not_shown_one_to_one_is_named_and_may_be_explained() {
+    let mut window = window();
+    assert!(window.harness.has("The X server does not say"));
+    let mut screen = window.pages.borrow().draft.screen().clone();
+    for (may_be_right, words) in [(false, "scaled"), (true, "its own 3840 x 2160")] {
+        screen.one_to_one = Some(Err(ModeFault {
+            words: words.to_owned(),
+            may_be_right,
+        }));
+        window.pages.borrow_mut().draft.stand_on(screen.clone());
+        window.harness.run_steps(2);
+        assert!(
+            window
+                .harness
+                .has(&format!("No session starts like this: {words}"))
+        );
+        assert_eq!(window.harness.has("why it is right"), may_be_right);
+    }
+    screen.one_to_one = Some(Ok(()));
+    window.pages.borrow_mut().draft.stand_on(screen);
+    window.harness.run_steps(2);
+    assert!(
+        window
+            .harness
+            .has("The monitor runs at its own resolution.")
+    );
+}
+
+/// Roles that a hand works.
+const CONTROLS: [egui::Role; 5] = [
+    egui::Role::Button,
+    egui::Role::CheckBox,
+    egui::Role::RadioButton,
+    egui::Role::Slider,
+    egui::Role::TextInput,
+];
+
+/// The names of the controls of the page that may be used now; each control must have one, and no other the same.
+fn controls(harness: &Harness<'_>, page: &str) -> Vec<String> {
+    let nodes = harness.root().children_recursive();
+    let controls = nodes.filter(|node| CONTROLS.contains(&node.accesskit_node().role()));
+    let mut names: Vec<String> = Vec::new();
+    let mut enabled = Vec::new();
+    for node in controls.map(|node| node.accesskit_node()) {
+        let name = node.label().unwrap_or_default();
+        assert!(!name.trim().is_empty(), "a control of {page} has no name");
+        assert!(!names.contains(&name), "{page}: two are {name:?}");
+        enabled.extend((!node.is_disabled()).then(|| name.clone()));
+        names.push(name);
+    }
+    enabled
+}
+
+fn focused(harness: &Harness<'_>) -> String {
+    let mut nodes = harness.root().children_recursive();
+    let node = nodes.find(egui_kittest::Node::is_focused);
+    node.and_then(|node| node.accesskit_node().label())
+        .unwrap_or_default()
+}
+
+#[test]
+fn every_control_has_a_name_of_its_own_and_tab_leads_to_it() {
+    let mut window = window();
+    window.pages.borrow_mut().draft.set_card_px(312.0);
+    let check = |window: &mut Window, page: &str| {
+        let mut missing = controls(&window.harness, page);
+        assert!(missing.len() > 5, "{page}: {missing:?}");
+        for _ in 0..2 * missing.len() {
+            window.harness.key_press(Key::Tab);
+            window.harness.run_steps(2);
+            let found = focused(&window.harness);
+            missing.retain(|name| *name != found);
+        }
+        assert!(missing.is_empty(), "{page}: no Tab leads to {missing:?}");
+    };
+    for page in [
+        "1  Screen",
+        "2  Distance",
+        "3  Refresh",
+        "4  Colour",
+        "5  Room",
+    ] {
+        window.harness.click_on(page);
+        check(&mut window, page);
+    }
+    window.harness.click_on("4  Colour");
+    for source in ["typed numbers", "ICC profile", "read patch by patch"] {
+        window.harness.click_on(source);
+        check(&mut window, source);
+    }
+    window
+        .harness
+        .click_on("Show the patches on the whole screen");
+    check(&mut window, "patches");
+}
+
+#[test]
+fn a_station_is_measured_and_saved_by_the_keyboard_alone() {
+    let mut window = window();
+    let tab_to = |window: &mut Window, name: &str| {
+        for _ in 0..30 {
+            window.harness.key_press(Key::Tab);
+            window.harness.run_steps(2);
+            if focused(&window.harness) == name {
+                return;
+            }
+        }
+        panic!("no Tab leads to {name:?}");
+    };
+    tab_to(&mut window, "outline of a bank card");
+    for _ in 0..12 {
+        window.harness.key_press(Key::ArrowLeft);
+        window.harness.run_steps(1);
+    }
+    tab_to(&mut window, "Save and close");
+    window.harness.key_press(Key::Enter);
+    window.harness.run_steps(2);
+    let wishes = window.wishes.borrow();
+    let [Wish::Save(station)] = wishes.as_slice() else {
+        panic!("{wishes:?}");
+    };
+    // 85.60 mm / 312 pixels.
+    assert!((station.pixel_pitch_mm() - 0.274_36).abs() < 1e-5);
 }
