@@ -11,6 +11,7 @@
 mod common;
 
 mod arrangement;
+mod bidirectional;
 mod bids;
 mod button;
 mod calibration;

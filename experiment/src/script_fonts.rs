@@ -5,8 +5,7 @@
 //! that has most of the protocol's other characters too, so that a text is in one hand; then upright sans-serif before
 //! the rest, then by name.
 //!
-//! Not here: text that runs from right to left. Its letters are found, but they are set from left to right, and
-//! [`text_faults`] says so.
+//! Not here: the order of words that run from right to left (`bidirectional`).
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -173,19 +172,6 @@ pub(crate) fn text_faults(study: &Study) -> Vec<String> {
             missing.join(", ")
         ));
     }
-    let leftward: Vec<String> = fonts
-        .wanted
-        .iter()
-        .filter(|character| runs_leftward(**character))
-        .take(3)
-        .map(name)
-        .collect();
-    if !leftward.is_empty() {
-        faults.push(format!(
-            "texts: {} and others run from right to left, and would be set from left to right; write these texts as pictures on pages, or in another script",
-            leftward.join(", ")
-        ));
-    }
     faults
 }
 
@@ -233,14 +219,6 @@ fn is_visible(character: char) -> bool {
     !(is_format || character.is_whitespace() || character.is_control())
 }
 
-/// Whether a character belongs to a script that runs from right to left (Unicode's blocks for those scripts).
-fn runs_leftward(character: char) -> bool {
-    matches!(
-        character,
-        '\u{590}'..='\u{8FF}' | '\u{FB1D}'..='\u{FDFF}' | '\u{FE70}'..='\u{FEFC}' | '\u{10800}'..='\u{10FFF}' | '\u{1E800}'..='\u{1EFFF}'
-    )
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -279,15 +257,6 @@ mod tests {
         assert!(
             fault.contains("U+10FFFD") && fault.contains("install a font"),
             "{fault}"
-        );
-    }
-
-    #[test]
-    fn text_that_runs_from_right_to_left_is_told() {
-        let faults = text_faults(&study_with("איכות"));
-        assert!(
-            faults.iter().any(|fault| fault.contains("right to left")),
-            "{faults:?}"
         );
     }
 

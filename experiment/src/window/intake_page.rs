@@ -5,13 +5,15 @@
 //! pixels of the screen, untinted and unfiltered.
 
 use eframe::egui::{
-    self, Button, Color32, ColorImage, CornerRadius, FontId, Key, Layout, Margin, Rect, RichText,
-    ScrollArea, Sense, Stroke, TextEdit, TextureHandle, TextureOptions, Ui, UiBuilder, Vec2, pos2,
-    vec2,
+    self, Align, Button, Color32, ColorImage, CornerRadius, FontId, Key, Label, Layout, Margin,
+    Rect, RichText, ScrollArea, Sense, Stroke, TextEdit, TextureHandle, TextureOptions, Ui,
+    UiBuilder, Vec2, pos2, vec2,
 };
 use protocols::{FieldKind, FormField, ScreeningPlan, SessionPlan};
 
 use super::geometry::Geometry;
+use super::set_text::SetText;
+use crate::bidirectional::begins_right;
 use crate::{Display, Intake, Reply, Side, Step};
 
 const INK: Color32 = Color32::from_gray(12);
@@ -172,8 +174,38 @@ impl Looks<'_> {
         }
     }
 
-    fn words(&self, words: &str, size: f32) -> RichText {
-        RichText::new(words).size(self.points(size)).color(INK)
+    /// Words on one line.
+    fn words(&self, ui: &Ui, words: &str, size: f32) -> RichText {
+        let font = FontId::proportional(self.points(size));
+        let set = SetText::of(ui.ctx(), words, &font, f32::INFINITY);
+        RichText::new(set.words).font(font).color(INK)
+    }
+
+    /// A paragraph as wide as there is room, aligned where it begins.
+    fn paragraph(&self, ui: &mut Ui, words: &str, size: f32) -> egui::Response {
+        self.paragraph_as(ui, words, size, |text| text)
+    }
+
+    fn paragraph_as(
+        &self,
+        ui: &mut Ui,
+        words: &str,
+        size: f32,
+        look: impl FnOnce(RichText) -> RichText,
+    ) -> egui::Response {
+        let font = FontId::proportional(self.points(size));
+        let set = SetText::of(ui.ctx(), words, &font, ui.available_width());
+        let text = look(RichText::new(set.words).font(font).color(INK));
+        let align = side_of(words);
+        ui.with_layout(Layout::top_down(align), |ui| {
+            let label = Label::new(text);
+            ui.add(if set.wrap.is_finite() {
+                label
+            } else {
+                label.extend()
+            })
+        })
+        .inner
     }
 
     /// A line in the middle of the screen's width.
@@ -181,7 +213,7 @@ impl Looks<'_> {
         let rect = self.part([0.05, y - 0.06], [0.95, y + 0.06]);
         let layout = Layout::centered_and_justified(egui::Direction::LeftToRight);
         ui.scope_builder(UiBuilder::new().max_rect(rect).layout(layout), |ui| {
-            ui.label(self.words(words, size));
+            ui.label(self.words(ui, words, size));
         });
     }
 
@@ -195,7 +227,7 @@ impl Looks<'_> {
         for (index, words) in words.iter().enumerate() {
             let centre = pos2(first + step * index as f32, middle.y);
             let rect = Rect::from_center_size(centre, vec2(wide, self.points(76.0)));
-            let button = Button::new(self.words(words, 30.0)).truncate();
+            let button = Button::new(self.words(ui, words, 30.0)).truncate();
             if ui.put(rect, button).clicked() {
                 pushed = Some(index);
             }
@@ -217,7 +249,7 @@ impl Looks<'_> {
             ScrollArea::vertical()
                 .auto_shrink([false, true])
                 .show(ui, |ui| {
-                    ui.label(self.words(consent.text.trim(), 28.0));
+                    self.paragraph(ui, consent.text.trim(), 28.0);
                 });
         });
         match self.row(ui, &[&consent.agree, &consent.decline], 0.88)? {
@@ -230,7 +262,7 @@ impl Looks<'_> {
         let rect = self.column(0.08, 0.8);
         let fields = intake.form().0.to_vec();
         let questions = |ui: &mut Ui| {
-            ui.label(self.words(&self.plan.texts.form, 34.0));
+            self.paragraph(ui, &self.plan.texts.form, 34.0);
             for (index, field) in fields.iter().enumerate() {
                 self.question(ui, field, intake, index);
             }
@@ -246,13 +278,13 @@ impl Looks<'_> {
 
     fn question(&self, ui: &mut Ui, field: &FormField, intake: &mut Intake, index: usize) {
         ui.add_space(self.points(14.0));
-        let label = ui.label(self.words(&field.label, 28.0));
+        let label = self.paragraph(ui, &field.label, 28.0);
         if let Some(answer) = intake.answer_mut(index) {
             self.field(ui, field, answer, label.id);
         }
         if intake.is_at_fault(index) {
-            let words = self.words(&self.plan.texts.form_fault, 24.0);
-            ui.label(words.strong().underline());
+            let words = &self.plan.texts.form_fault;
+            self.paragraph_as(ui, words, 24.0, |words| words.strong().underline());
         }
     }
 
@@ -262,18 +294,18 @@ impl Looks<'_> {
             FieldKind::Choice | FieldKind::Text => self.points(700.0),
         };
         if field.kind == FieldKind::Choice {
-            ui.horizontal_wrapped(|ui| {
+            beside(ui, &field.label, |ui| {
                 ui.spacing_mut().item_spacing.x = self.points(36.0);
                 // What has the keyboard has a thicker ring; a bright face would look chosen.
                 ui.visuals_mut().widgets.active.bg_fill = FACE;
                 for choice in &field.choices {
-                    let words = self.words(choice, 28.0);
+                    let words = self.words(ui, choice, 28.0);
                     ui.radio_value(answer, choice.clone(), words);
                 }
             });
             return;
         }
-        ui.horizontal(|ui| {
+        beside(ui, &field.label, |ui| {
             let edit = TextEdit::singleline(answer)
                 .desired_width(width)
                 .text_color(INK)
@@ -281,7 +313,7 @@ impl Looks<'_> {
                 .font(FontId::proportional(self.points(28.0)));
             ui.add(edit).labelled_by(label);
             if let Some(unit) = &field.unit {
-                ui.label(self.words(unit, 28.0));
+                ui.label(self.words(ui, unit, 28.0));
             }
         });
     }
@@ -294,7 +326,7 @@ impl Looks<'_> {
         for digit in 0..10_u8 {
             let centre = pos2(middle.x + step * (f32::from(digit) - 4.5), middle.y);
             let rect = Rect::from_center_size(centre, Vec2::splat(side));
-            let button = Button::new(self.words(&digit.to_string(), 36.0));
+            let button = Button::new(self.words(ui, &digit.to_string(), 36.0));
             if ui.put(rect, button).clicked() {
                 reply = Some(Reply::Digit(Some(digit)));
             }
@@ -381,6 +413,26 @@ impl Looks<'_> {
         let arrow = egui::Shape::convex_polygon(corners, INK, Stroke::NONE);
         ui.painter().add(arrow);
         response.clicked()
+    }
+}
+
+/// Things side by side, from the side where these words begin.
+fn beside<R>(ui: &mut Ui, words: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let room = vec2(ui.available_width(), ui.spacing().interact_size.y);
+    let layout = match side_of(words) {
+        Align::Max => Layout::right_to_left(Align::Center),
+        _ => Layout::left_to_right(Align::Center),
+    };
+    ui.allocate_ui_with_layout(room, layout.with_main_wrap(true), add)
+        .inner
+}
+
+/// The side where words begin.
+fn side_of(words: &str) -> Align {
+    if begins_right(words) {
+        Align::Max
+    } else {
+        Align::Min
     }
 }
 

@@ -16,6 +16,7 @@ mod proof;
 mod screen_mode;
 mod screen_watch;
 mod server_screen;
+mod set_text;
 mod station;
 mod swap_watch;
 mod view;

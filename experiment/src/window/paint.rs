@@ -15,6 +15,8 @@ use protocols::rating::Phase;
 use protocols::{Layout, RatingTime, ResponseStyle, SessionPlan, Stimuli, StimulusId};
 
 use super::geometry::{Geometry, Slot};
+use super::set_text::SetText;
+use crate::bidirectional::begins_right;
 use crate::{Button, Picture, Response, Screen, Session, StimulusSet};
 
 const INK: Color32 = Color32::from_gray(12);
@@ -245,14 +247,16 @@ impl Brush<'_> {
     fn galley(&self, words: &str, size: f32, wrap_px: f32, halign: Align) -> Arc<Galley> {
         let points_per_unit = self.geometry.unit() / self.geometry.pixels_per_point;
         let font = FontId::proportional(size * points_per_unit);
+        let wrap = wrap_px / self.geometry.pixels_per_point;
+        let set = SetText::of(self.painter.ctx(), words, &font, wrap);
         let mut job = LayoutJob::default();
-        job.wrap.max_width = wrap_px / self.geometry.pixels_per_point;
+        job.wrap.max_width = set.wrap;
         job.halign = halign;
         let format = TextFormat {
             line_height: Some(size * 1.4 * points_per_unit),
             ..TextFormat::simple(font, INK)
         };
-        job.append(words, 0.0, format);
+        job.append(&set.words, 0.0, format);
         self.painter.layout_job(job)
     }
 
@@ -267,10 +271,16 @@ impl Brush<'_> {
         (self.geometry.size_px * vec2(x, y)).to_pos2()
     }
 
-    /// Paragraphs, left-aligned in a block in the middle of the screen.
+    /// Paragraphs, aligned where they begin, in a block in the middle of the screen.
     fn page(&self, words: &str, y: f32) {
         let width = (0.62 * self.geometry.size_px.x).min(1150.0 * self.geometry.unit());
-        let galley = self.galley(words.trim(), 34.0, width, Align::LEFT);
+        let words = words.trim();
+        let halign = if begins_right(words) {
+            Align::RIGHT
+        } else {
+            Align::LEFT
+        };
+        let galley = self.galley(words, 34.0, width, halign);
         self.centred(galley, self.place(0.5, y));
     }
 
