@@ -30,7 +30,10 @@ fn plan() -> SessionPlan {
 }
 
 fn pages(before: DoneBefore) -> Pages {
-    let plan = plan();
+    pages_of(plan(), before)
+}
+
+fn pages_of(plan: SessionPlan, before: DoneBefore) -> Pages {
     let intake = Intake::new(&plan, &"S1".parse().unwrap(), 1, before);
     let intake = Rc::new(RefCell::new(intake));
     let finished = Rc::new(RefCell::new(Vec::new()));
@@ -38,6 +41,12 @@ fn pages(before: DoneBefore) -> Pages {
     let mut page = IntakePage::default();
     let size = vec2(1280.0, 800.0);
     let harness = Harness::builder().with_size(size).build_ui(move |ui| {
+        // The computer need not have a font of every script; the policy holds from the next frame on.
+        let tofu = egui::MissingGlyphPolicy::Tofu;
+        if ui.ctx().missing_glyph_policy() != tofu {
+            ui.ctx().set_missing_glyph_policy(tofu);
+            return;
+        }
         let geometry = Geometry {
             size_px: size,
             pixels_per_point: 1.0,
@@ -183,4 +192,26 @@ fn a_press_on_one_page_and_a_release_on_the_next_push_nothing() {
     pages.harness.event(pointer(false));
     pages.harness.run();
     assert_eq!(pages.step(), Step::Plate(1));
+}
+
+/// The column of text is .31 of the width on each side of the middle: 243 to 1037 points.
+#[test]
+fn a_form_that_runs_from_right_to_left_begins_on_the_right() {
+    let mut plan = plan();
+    plan.texts.form = "שאלות".to_owned();
+    plan.form[0].label = "בן כמה אתה".to_owned();
+    plan.form[1].label = "Glasses".to_owned();
+    let before = DoneBefore {
+        has_consent: true,
+        ..DoneBefore::default()
+    };
+    let mut pages = pages_of(plan, before);
+    pages.harness.run();
+    let side = |name: &str| pages.harness.get_by_label(name).rect();
+    assert!((side("שאלות").right() - 1037.0).abs() < 2.0);
+    // Its words in the order in which they are drawn, and its field below it on the same side.
+    let role = egui::Role::TextInput;
+    let age = pages.harness.get_by_role_and_label(role, "אתה כמה בן");
+    assert!((age.rect().right() - 1037.0).abs() < 2.0);
+    assert!((side("Glasses").left() - 243.0).abs() < 2.0);
 }
