@@ -23,9 +23,11 @@
 //!
 //! Not here: clocks, files, random numbers, pictures.
 
+mod answer;
 mod hands;
 mod orders;
 mod rest;
+mod screen;
 
 use crate::button::{Button, Key};
 use crate::frame_clock::{FrameClock, Interval};
@@ -38,6 +40,9 @@ use crate::rules::Rules;
 
 use protocols::RatingTime;
 use protocols::rating::Phase;
+
+pub use answer::{Answer, Ending};
+pub use screen::Screen;
 
 /// Something that happens to the session.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,91 +60,6 @@ pub enum Event {
     Key(Key),
     /// The rating of [`Session::to_save`] is safely on disk.
     Saved,
-}
-
-/// What a frame shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Screen {
-    /// The instructions, with a button to begin.
-    Instructions,
-    /// The page with this index, which follows the instructions.
-    Page(usize),
-    /// A break.
-    Break {
-        /// How many seconds are left, rounded up.
-        left_s: u32,
-        /// Whether there is a button to go on.
-        can_go_on: bool,
-    },
-    /// That a session that was cut off goes on, with a button.
-    Resumed,
-    /// That the practice is over, with a button to go on.
-    PracticeOver,
-    /// Grey.
-    Blank,
-    /// Images of the trial with this index.
-    Exposure(usize, Picture),
-    /// The same, with the rating scale below.
-    RatedExposure(usize, Picture),
-    /// The rating scale.
-    Rating,
-    /// That the answer took too long, with a button to see the images again.
-    TooSlow,
-    /// A rest, with a button to go on.
-    Paused,
-    /// Whether to stop.
-    ConfirmStop,
-    /// The end.
-    Thanks,
-}
-
-impl Screen {
-    /// Whether the rating scale is on it.
-    pub fn has_scale(self) -> bool {
-        matches!(self, Self::Rating | Self::RatedExposure(..))
-    }
-
-    /// The images on it.
-    pub fn picture(self) -> Option<(usize, Picture)> {
-        match self {
-            Self::Exposure(trial, picture) | Self::RatedExposure(trial, picture) => {
-                Some((trial, picture))
-            }
-            _ => None,
-        }
-    }
-}
-
-/// The answer to one trial.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Answer {
-    /// The index of the trial in the session.
-    pub trial: usize,
-    /// The rating of the test image.
-    pub rating: i32,
-    /// The rating of the reference, where both are rated.
-    pub reference_rating: Option<i32>,
-    /// From the first frame submitted with the scale to the answer.
-    pub response_time_s: f64,
-    /// From the first frame submitted with the test image to the first without it.
-    pub exposure_submitted_s: f64,
-    /// Frames of the test image later than one and a half frame times after the one before.
-    pub missed_frames: u32,
-    /// How often the trial was begun: more than once if its exposure was interrupted or the answer too late.
-    pub showings: u32,
-    /// When the trial began, by the driver's clock.
-    pub started_s: f64,
-}
-
-/// How a session ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ending {
-    /// Every trial is rated.
-    Complete,
-    /// The subject stopped; what was rated is kept.
-    Stopped,
-    /// The subject did not agree to take part; nothing is kept.
-    Declined,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -190,11 +110,33 @@ struct View {
 #[derive(Clone, Copy, Debug, Default)]
 struct Exposed {
     started_s: f64,
+    /// Whether a frame was drawn since the trial began: the one before is not of this trial.
+    is_drawn: bool,
     onset_s: Option<f64>,
     offset_s: Option<f64>,
     missed_frames: u32,
     /// When the scale was first submitted.
     scale_s: Option<f64>,
+}
+
+impl Exposed {
+    /// A frame with this screen has been submitted. What is asked of the session before may already have changed.
+    fn submitted(&mut self, screen: Screen, at_s: f64) {
+        if screen.has_scale() {
+            self.scale_s = self.scale_s.or(Some(at_s));
+        }
+        let has_test_image = screen
+            .picture()
+            .is_some_and(|(_, picture)| picture.has_test_image());
+        match (has_test_image, self.onset_s, self.offset_s) {
+            (true, None, _) | (true, _, Some(_)) => {
+                self.onset_s = Some(at_s);
+                self.offset_s = None;
+            }
+            (false, Some(_), None) => self.offset_s = Some(at_s),
+            _ => {}
+        }
+    }
 }
 
 /// One sitting of one subject.
@@ -419,14 +361,17 @@ impl Session {
         if interval == Interval::Exposure && is_late {
             self.exposed.missed_frames += 1;
         }
+        if let (Some(drawn), true) = (self.drawn, self.exposed.is_drawn) {
+            self.exposed.submitted(drawn, at_s);
+        }
         if self.view.is_drawn && self.view.shown_s.is_none() {
             self.view.shown_s = Some(at_s);
-            self.submitted(at_s);
         }
         if self.asking.is_none() {
             self.run(at_s);
         }
         self.view.is_drawn = true;
+        self.exposed.is_drawn = true;
         self.drawn = Some(self.screen());
     }
 
@@ -442,22 +387,6 @@ impl Session {
         } else if self.is_too_late(at_s) {
             self.note(Noted::TooLate, at_s, "");
             self.go(State::TooSlow);
-        }
-    }
-
-    /// The first frame of the present screen has been submitted.
-    fn submitted(&mut self, at_s: f64) {
-        let screen = self.screen();
-        let picture = screen.picture();
-        let exposed = &mut self.exposed;
-        if screen.has_scale() {
-            exposed.scale_s = exposed.scale_s.or(Some(at_s));
-        }
-        if picture.is_some_and(|(_, picture)| picture.has_test_image()) {
-            exposed.onset_s = Some(at_s);
-            exposed.offset_s = None;
-        } else if exposed.onset_s.is_some() {
-            exposed.offset_s = exposed.offset_s.or(Some(at_s));
         }
     }
 

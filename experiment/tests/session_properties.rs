@@ -2,7 +2,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
-use experiment::{Answer, Button, Event, First, Key, Picture, Rules, Screen, Session, Trial};
+use experiment::{
+    Answer, Button, Event, First, Key, Order, Picture, Rules, Screen, Session, Trial,
+};
 use proptest::prelude::*;
 use protocols::rating::Phase;
 use protocols::{Layout, RatingTime, ResponseStyle, Scale};
@@ -21,6 +23,15 @@ enum Happening {
     Release(Option<Button>),
     Key(Key),
     Saved,
+    /// The experimenter asks for one of [`ORDERS`].
+    Order(usize),
+}
+
+const ORDERS: [Order; 3] = [Order::Pause, Order::Resume, Order::Stop];
+
+/// Rests and their ends, and seldom a stop.
+fn order() -> impl Strategy<Value = usize> {
+    (0..60_usize).prop_map(|number| if number == 0 { 2 } else { number % 2 })
 }
 
 fn button() -> impl Strategy<Value = Option<Button>> {
@@ -55,6 +66,7 @@ fn happenings() -> impl Strategy<Value = Vec<Happening>> {
         1 => button().prop_map(|button| vec![Happening::Release(button)]),
         3 => key().prop_map(|key| vec![Happening::Key(key)]),
         3 => Just(vec![Happening::Saved]),
+        1 => order().prop_map(|order| vec![Happening::Order(order)]),
     ];
     prop::collection::vec(group, 0..300).prop_map(|groups| groups.concat())
 }
@@ -201,6 +213,7 @@ fn check(happenings: &[Happening], layout: Layout) -> Result<usize, TestCaseErro
                 by_click = button;
             }
             Happening::Key(key) => session.on(Event::Key(key), record.now_s),
+            Happening::Order(order) => session.order(&ORDERS[order], record.now_s),
             Happening::Saved => {
                 session.on(Event::Saved, record.now_s);
                 record.answers.extend(waiting);
@@ -260,6 +273,7 @@ fn check_pairs(happenings: &[Happening]) -> Result<usize, TestCaseError> {
             Happening::Press(button) => session.on(Event::Press(button.map(on_bar)), now_s),
             Happening::Release(button) => session.on(Event::Release(button.map(on_bar)), now_s),
             Happening::Key(key) => session.on(Event::Key(key), now_s),
+            Happening::Order(order) => session.order(&ORDERS[order], now_s),
             Happening::Saved => {
                 session.on(Event::Saved, now_s);
                 saved += usize::from(before.is_some());
