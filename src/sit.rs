@@ -170,7 +170,8 @@ pub(crate) fn export(arguments: &ExportArguments) -> anyhow::Result<()> {
     let data = arguments.data.of(&study);
     let sessions = experiment::export_bids(&study, &stimuli, &data, &arguments.bids)?;
     let folder = arguments.bids.display();
-    console::print(format!("{sessions} sessions in {folder}"))?;
+    let word = if sessions == 1 { "session" } else { "sessions" };
+    console::print(format!("{sessions} {word} in {folder}"))?;
     Ok(())
 }
 

@@ -8,7 +8,7 @@ use std::io::ErrorKind;
 use std::os::unix::fs::DirBuilderExt as _;
 use std::path::Path;
 
-use protocols::rating::columns;
+use protocols::rating::{Column, columns};
 use protocols::{
     Access, DataSet, InputError, Observer, ReadError, Study, settle_names, write_atomically,
 };
@@ -118,22 +118,12 @@ fn description(study: &Study, observer: Observer) -> Value {
     let has_timing = observer == Observer::Person;
     let timing = timing_log::columns().filter(|_| has_timing);
     let of_ratings = columns(&study.protocol.stimuli.factors());
-    let variables: Vec<Value> = of_ratings
-        .into_iter()
-        .chain(crate::intake_files::columns(&study.protocol.session))
-        .chain(timing)
-        .map(|column| {
-            let mut variable = json!({
-                "@type": "PropertyValue",
-                "name": column.name,
-                "description": column.description,
-            });
-            if let Some(unit) = column.unit {
-                variable["unitText"] = unit.into();
-            }
-            variable
-        })
-        .collect();
+    let variables = variables(
+        of_ratings
+            .into_iter()
+            .chain(crate::intake_files::columns(&study.protocol.session))
+            .chain(timing),
+    );
     json!({
         "@context": "https://schema.org",
         "@type": "Dataset",
@@ -146,6 +136,33 @@ fn description(study: &Study, observer: Observer) -> Value {
         "keywords": ["psychophysics", "image quality", observer_word(observer)],
         "variableMeasured": variables,
     })
+}
+
+/// A description of each name, once: where a factor is called as a column of another table is, it says both.
+fn variables(columns: impl Iterator<Item = Column>) -> Vec<Value> {
+    let mut named: Vec<Column> = Vec::new();
+    for column in columns {
+        match named.iter_mut().find(|known| known.name == column.name) {
+            None => named.push(column),
+            Some(known) if known.description == column.description => {}
+            Some(known) => {
+                known.description += "; in a table without that: ";
+                known.description += &column.description;
+            }
+        }
+    }
+    let variable = |column: Column| {
+        let mut variable = json!({
+            "@type": "PropertyValue",
+            "name": column.name,
+            "description": column.description,
+        });
+        if let Some(unit) = column.unit {
+            variable["unitText"] = unit.into();
+        }
+        variable
+    };
+    named.into_iter().map(variable).collect()
 }
 
 /// Creates a folder that only its owner may enter, and the folders above it; their names outlast a power cut.

@@ -19,7 +19,7 @@ use crate::{ExperimentError, data_set_files};
 const NONE: &str = "n/a";
 
 /// The columns of the screening, with unit and meaning.
-const SCREENING_COLUMNS: [(&str, Option<&str>, &str); 11] = [
+pub(crate) const SCREENING_COLUMNS: [(&str, Option<&str>, &str); 11] = [
     ("item", None, "the screening's items, from 1"),
     (
         "item_kind",

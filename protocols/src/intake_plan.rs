@@ -7,12 +7,34 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 
 use crate::Sha256Digest;
+use crate::rating::columns;
 
 /// A fault: the field, what was found, what was expected.
 type Fault = (&'static str, String, &'static str);
 
-/// Names that a column of a form may not have: every table of the data set has them already.
-const TAKEN: [&str; 4] = ["subject_id", "session_id", "pilot", "observer"];
+/// Columns of the tables of screening, frames and events, which the crate `experiment` writes. A data set describes
+/// each name once, so a question can have none of them, nor one of the ratings' own.
+const TAKEN: [&str; 19] = [
+    "answer_time_s",
+    "at_us",
+    "at_utc",
+    "axis",
+    "began_us",
+    "correct",
+    "detail",
+    "event",
+    "excursion",
+    "grade",
+    "intervals_us",
+    "item",
+    "item_kind",
+    "screen",
+    "seen",
+    "shown",
+    "sitting",
+    "stroke_arcmin",
+    "stroke_px",
+];
 
 /// What a subject must agree to before anything else.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -118,8 +140,8 @@ impl FormField {
             .bytes()
             .next()
             .is_some_and(|b| b.is_ascii_lowercase());
-        if !begins || !self.key.bytes().all(is_plain) || TAKEN.contains(&self.key.as_str()) {
-            let expected = "lower-case letters, digits and '_', a letter first, and no column that is there already";
+        if !begins || !self.key.bytes().all(is_plain) {
+            let expected = "lower-case letters, digits and '_', a letter first";
             return Some(("session.form.key", format!("{:?}", self.key), expected));
         }
         if self.label.trim().is_empty() {
@@ -150,20 +172,24 @@ impl FormField {
     }
 }
 
-/// Checks every question, and that no two have one name.
-pub(crate) fn form_fault(form: &[FormField]) -> Option<Fault> {
+/// Checks every question, and that none has the name of another or of a column of the study's data.
+pub(crate) fn form_fault(form: &[FormField], factors: &[String]) -> Option<Fault> {
+    let place = "session.form.key";
+    let ratings = columns(factors);
     let mut keys = BTreeSet::new();
     form.iter().find_map(|field| {
-        field.fault().or_else(|| {
-            (!keys.insert(&field.key)).then(|| {
-                let expected = "a name of its own for each question";
-                (
-                    "session.form.key",
-                    format!("{:?} twice", field.key),
-                    expected,
-                )
+        let key = &field.key;
+        let is_taken = TAKEN.contains(&key.as_str()) || ratings.iter().any(|c| c.name == *key);
+        field
+            .fault()
+            .or_else(|| {
+                let expected = "a name that no column of the study's data has already; take another, such as \"your_\" before it";
+                is_taken.then(|| (place, format!("{key:?}"), expected))
             })
-        })
+            .or_else(|| {
+                let expected = "a name of its own for each question";
+                (!keys.insert(key)).then(|| (place, format!("{key:?} twice"), expected))
+            })
     })
 }
 

@@ -68,12 +68,13 @@ impl Protocol {
             return Some(("study", format!("{:?}", self.study), expected));
         }
         let stimuli = self.stimuli.rendered().and_then(StimulusPlan::fault);
+        let factors = self.stimuli.factors();
         stimuli
             .or_else(|| self.viewing.fault())
             .or_else(|| self.acuity.and_then(Acuity::fault))
-            .or_else(|| self.session.fault())
+            .or_else(|| self.session.fault(&factors))
             .or_else(|| self.simulation.fault())
-            .or_else(|| self.analysis.fault(&self.stimuli.factors()))
+            .or_else(|| self.analysis.fault(&factors))
             .or_else(|| self.missing_anchors())
             .or_else(|| self.unknown_image())
     }

@@ -42,7 +42,8 @@ pub enum ShownFirst {
 }
 
 impl ShownFirst {
-    const fn as_str(self) -> &'static str {
+    /// The word in the table.
+    pub const fn as_str(self) -> &'static str {
         match self {
             Self::Test => "test",
             Self::Reference => "reference",

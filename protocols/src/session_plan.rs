@@ -76,7 +76,7 @@ pub struct SessionPlan {
 }
 
 impl SessionPlan {
-    pub(crate) fn fault(&self) -> Option<(&'static str, String, &'static str)> {
+    pub(crate) fn fault(&self, factors: &[String]) -> Option<(&'static str, String, &'static str)> {
         if !(self.exposure_s.is_finite() && (0.05..=3600.0).contains(&self.exposure_s)) {
             return Some((
                 "session.exposure_s",
@@ -103,7 +103,7 @@ impl SessionPlan {
             .or_else(|| self.tolerance_fault())
             .or_else(|| self.order.fault())
             .or_else(|| self.consent.as_ref()?.fault())
-            .or_else(|| form_fault(&self.form))
+            .or_else(|| form_fault(&self.form, factors))
             .or_else(|| self.screening.as_ref()?.fault())
             .or_else(|| self.pages.iter().find_map(InstructionPage::fault))
             .or_else(|| self.breaks.as_ref()?.fault())
