@@ -12,7 +12,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use jiff::Timestamp;
-use protocols::rating::{Phase, RatingRow, columns, read_ratings};
+use protocols::rating::{Phase, RatingRow, ShownFirst, columns, read_ratings};
 use protocols::{
     Access, DataSet, InputError, Manifest, ManifestFile, Observer, StimulusId, Study,
     write_atomically,
@@ -214,6 +214,7 @@ impl Export<'_> {
             fields.extend([
                 row.rating.to_string(),
                 or_not(row.reference_rating),
+                row.shown_first.map_or("n/a", ShownFirst::as_str).to_owned(),
                 row.missed_frames.to_string(),
                 row.showings.to_string(),
             ]);
@@ -285,7 +286,14 @@ impl Export<'_> {
 /// The columns that are Acuity's own, in their order.
 fn own_columns(factors: &[String]) -> Vec<String> {
     let before = ["trial_id", "repetition"].map(str::to_owned);
-    let after = ["rating", "reference_rating", "missed_frames", "showings"].map(str::to_owned);
+    let after = [
+        "rating",
+        "reference_rating",
+        "shown_first",
+        "missed_frames",
+        "showings",
+    ];
+    let after = after.map(str::to_owned);
     before
         .into_iter()
         .chain(factors.iter().cloned())
@@ -300,7 +308,8 @@ fn started(row: &RatingRow) -> Result<Timestamp, InputError> {
     })
 }
 
-/// What showed the pictures, by the latest sitting.
+/// What showed the pictures, by the latest sitting. The distance is that of the station, or where none was measured
+/// the protocol's.
 fn presentation(session: &Session, viewing: protocols::Viewing) -> Value {
     let mut presentation = json!({
         "SoftwareName": "acuity",
@@ -316,6 +325,14 @@ fn presentation(session: &Session, viewing: protocols::Viewing) -> Value {
     if let Some(station) = station {
         presentation["OperatingSystem"] = station.operating_system.clone().into();
         presentation["ScreenResolution"] = json!(station.monitor_px);
+        if let Some(measured) = &station.measured {
+            let metres = |mm: f64| (mm * 100.0).round() / 1e5;
+            let size = station
+                .monitor_px
+                .map(|pixels| metres(f64::from(pixels) * measured.pixel_pitch_mm()));
+            presentation["ScreenDistance"] = json!(metres(measured.distance_cm * 10.0));
+            presentation["ScreenSize"] = json!(size);
+        }
         if let Some(hz) = station.refresh.and_then(|refresh| refresh.nominal_hz) {
             presentation["ScreenRefreshRate"] = json!(hz);
         }

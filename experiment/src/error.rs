@@ -22,12 +22,14 @@ pub enum ExperimentError {
         source: io::Error,
     },
     /// Another window runs the same session.
-    #[error("subject {subject} is in a session already: another program holds \"{}\"; close its window first. The lock goes with the program: if no window is open, a program still runs unseen (`fuser` with the file names it)", file.display())]
+    #[error("subject {subject} is in a session already: another program{} holds \"{}\"; close its window first. The lock goes with the program, so a crash leaves none: if no window is open, that program still runs unseen, and `kill` ends it", holder.map_or_else(String::new, |id| format!(" (process {id})")), file.display())]
     Busy {
         /// The subject.
         subject: SubjectId,
         /// The locked ratings file.
         file: PathBuf,
+        /// The process that holds the lock, if the system says which one.
+        holder: Option<u32>,
     },
     /// The images do not fit on the monitor at one image pixel per screen pixel.
     #[error(

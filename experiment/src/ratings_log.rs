@@ -55,6 +55,7 @@ impl RatingsLog {
                 let subject = key.subject_id.clone();
                 return Err(ExperimentError::Busy {
                     subject,
+                    holder: holder(&file),
                     file: path,
                 });
             }
@@ -123,6 +124,23 @@ impl RatingsLog {
             .map_err(ExperimentError::io("read", &self.path))?;
         Ok(bytes)
     }
+}
+
+/// The process that holds the lock of a file, as `/proc/locks` has it: by device (major and minor, hexadecimal) and
+/// inode.
+fn holder(file: &File) -> Option<u32> {
+    let metadata = file.metadata().ok()?;
+    let (device, inode) = (metadata.dev(), metadata.ino());
+    let major = (device >> 8 & 0xfff) | (device >> 32 & !0xfff);
+    let minor = (device & 0xff) | (device >> 12 & !0xff);
+    let wanted = format!("{major:02x}:{minor:02x}:{inode}");
+    let locks = std::fs::read_to_string("/proc/locks").ok()?;
+    let mut lines = locks.lines().map(|line| line.split_whitespace());
+    lines.find_map(|mut words| {
+        let (kind, process) = (words.nth(1)?, words.nth(2)?);
+        let is_it = kind == "FLOCK" && words.next()? == wanted;
+        is_it.then(|| process.parse().ok())?
+    })
 }
 
 /// Cuts off what lies beyond the whole lines, writes the header of a file that has none, and goes to the

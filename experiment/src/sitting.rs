@@ -433,10 +433,14 @@ pub fn close_session(
 #[cfg(test)]
 mod crash;
 #[cfg(test)]
+mod disks;
+#[cfg(test)]
 mod intake_kept;
 #[cfg(test)]
 mod power_loss;
 #[cfg(test)]
 mod psych_ds;
+#[cfg(test)]
+mod resumed;
 #[cfg(test)]
 pub(crate) mod tests;

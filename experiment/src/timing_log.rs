@@ -6,7 +6,7 @@
 
 use std::fs::OpenOptions;
 use std::io::Write as _;
-use std::os::unix::fs::OpenOptionsExt as _;
+use std::os::unix::fs::{FileExt as _, OpenOptionsExt as _};
 use std::path::{Path, PathBuf};
 
 use jiff::Timestamp;
@@ -121,19 +121,30 @@ impl TimingLog {
     }
 }
 
-/// Appends lines in one write; a new file begins with the header.
+/// Appends lines in one write; a new file begins with the header. A line that was torn is ended first, so that it costs
+/// no other.
 fn append_lines(path: &Path, header: &str, lines: &str) -> Result<(), ExperimentError> {
     if lines.is_empty() {
         return Ok(());
     }
     let write = || {
         let mut file = OpenOptions::new()
+            .read(true)
             .append(true)
             .create(true)
             .mode(0o600)
             .open(path)?;
-        let is_new = file.metadata()?.len() == 0;
-        let text = [if is_new { header } else { "" }, lines].concat();
+        let length = file.metadata()?.len();
+        let mut last = [b'\n'];
+        if length > 0 {
+            file.read_exact_at(&mut last, length - 1)?;
+        }
+        let before = match (length, last) {
+            (0, _) => header,
+            (_, [b'\n']) => "",
+            _ => "\n",
+        };
+        let text = [before, lines].concat();
         file.write_all(text.as_bytes())
     };
     write().map_err(ExperimentError::io("write", path))

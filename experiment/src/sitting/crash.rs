@@ -16,6 +16,8 @@ use protocols::rating::read_ratings;
 
 /// Names the folder of the study to the victim.
 const FOLDER: &str = "ACUITY_TEST_VICTIM_IN";
+/// After so many trials the victim waits for a line on its standard input.
+pub(super) const WAITS_AT: &str = "ACUITY_TEST_VICTIM_WAITS_AT";
 /// How many times the victim is killed, unless the variable of that name says otherwise.
 const KILLS: usize = 60;
 
@@ -40,9 +42,17 @@ fn a_victim_sits_the_session() {
                 }
                 sitting.session.on(Event::Key(Key::Enter), at_s);
                 let is_answered = sitting.session.to_save().is_some();
-                sitting.save(|| at_s).unwrap();
+                if let Err(error) = sitting.save(|| at_s) {
+                    let cause = std::error::Error::source(&error).map(ToString::to_string);
+                    writeln!(out, "\nfailed {error}: {}", cause.unwrap_or_default()).unwrap();
+                    panic!("{error}");
+                }
                 if is_answered {
-                    writeln!(out, "\naccepted {}", sitting.session.rated()).unwrap();
+                    let rated = sitting.session.rated().to_string();
+                    writeln!(out, "\naccepted {rated}").unwrap();
+                    if std::env::var(WAITS_AT).is_ok_and(|wanted| wanted == rated) {
+                        std::io::stdin().read_line(&mut String::new()).unwrap();
+                    }
                 }
             }
             Screen::Instructions | Screen::Resumed | Screen::PracticeOver => {
@@ -72,6 +82,7 @@ pub(super) fn victim(place: &Place, wrapper: &[&str]) -> Child {
             "--nocapture",
         ])
         .env(FOLDER, place.folder())
+        .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
         .spawn()

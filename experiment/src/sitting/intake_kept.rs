@@ -4,10 +4,11 @@ use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::Path;
 
-use protocols::{ConsentPlan, FieldKind, FormField};
+use protocols::{ConsentPlan, FieldKind, FormField, SessionPlan};
 
 use super::tests::Place;
-use crate::{Axis, Ending, Finished, LetterAnswer, PlateAnswer, Side, Step};
+use crate::intake_files::SCREENING_COLUMNS;
+use crate::{Axis, Ending, Finished, LetterAnswer, Order, PlateAnswer, Side, Step};
 
 fn field(key: &str) -> FormField {
     FormField {
@@ -26,7 +27,12 @@ fn field(key: &str) -> FormField {
 /// A study with consent, a form and screening.
 pub(super) fn place() -> Place {
     let mut place = Place::new();
-    let session = &mut place.study.protocol.session;
+    ask(&mut place.study.protocol.session);
+    place
+}
+
+/// Puts consent, a form and screening into a protocol.
+pub(super) fn ask(session: &mut SessionPlan) {
     session.consent = Some(ConsentPlan {
         text: "Agree?".to_owned(),
         agree: "Yes".to_owned(),
@@ -34,7 +40,6 @@ pub(super) fn place() -> Place {
     });
     session.form = vec![field("glasses"), field("email")];
     session.screening = toml::from_str("seed = 1").ok();
-    place
 }
 
 pub(super) fn answers() -> Finished {
@@ -149,6 +154,51 @@ fn the_screening_is_a_row_for_each_item_and_a_score_in_the_sidecar() {
             .unwrap()
             .contains("never a diagnosis")
     );
+}
+
+#[test]
+fn a_question_cannot_have_the_name_of_a_column() {
+    let place = place();
+    let path = place.folder().join("asked.toml");
+    let protocol = fs::read_to_string(&place.study.path).unwrap();
+    let asks = |key: &str| {
+        let question =
+            format!("[[session.form]]\nkey = \"{key}\"\nlabel = \"?\"\nkind = \"text\"\n");
+        fs::write(&path, format!("{protocol}\n{question}")).unwrap();
+        protocols::Study::read(&path)
+    };
+    assert!(asks("handedness").is_ok());
+    let factors = place.study.protocol.stimuli.factors();
+    let names = protocols::rating::columns(&factors).into_iter();
+    let names = names
+        .chain(crate::timing_log::columns())
+        .map(|column| column.name);
+    let names = names.chain(SCREENING_COLUMNS.map(|column| column.0.to_owned()));
+    for name in names {
+        let text = asks(&name).unwrap_err().to_string();
+        let is_named = text.contains("session.form.key") && text.contains(&format!("{name:?}"));
+        assert!(is_named && text.contains("no column"), "{text}");
+    }
+}
+
+#[test]
+fn a_note_of_the_experimenter_is_in_the_sidecar_and_in_the_events() {
+    let place = Place::new();
+    place.rate(2);
+    let mut sitting = place.open().unwrap();
+    sitting.order(&Order::Note("coughs, \"badly\"".to_owned()), 1.5);
+    sitting.keep_words().unwrap();
+    drop(sitting);
+    let sidecar = fs::read_to_string(place.ratings_path().with_extension("json")).unwrap();
+    let sidecar: serde_json::Value = serde_json::from_str(&sidecar).unwrap();
+    let note = serde_json::json!({
+        "at": "1970-01-01T00:00:01.500Z", "trial_id": 3, "text": "coughs, \"badly\""
+    });
+    assert_eq!(sidecar["sittings"][1]["notes"], serde_json::json!([note]));
+    let events = "study-meyerliu1992_subject-S1_session-1_task-rating_events.csv";
+    let events = fs::read_to_string(place.options.data_dir.join("timing").join(events)).unwrap();
+    // Quotes would end the field.
+    assert!(events.contains(",3,note,\"coughs,  badly \"\n"), "{events}");
 }
 
 /// The rule of Psych-DS: every column of every table is described.

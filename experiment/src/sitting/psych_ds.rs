@@ -6,14 +6,16 @@
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 
-use protocols::Access;
+use protocols::{Access, Layout};
 use serde_json::Value;
 
 use super::intake_kept::{answers, place};
+use super::resumed;
 use super::tests::Place;
-use crate::{Finished, simulate};
+use crate::{Finished, export_bids, simulate};
 
 /// The keys of file names that the standard defines.
 const OFFICIAL_KEYS: [&str; 9] = [
@@ -39,8 +41,9 @@ const REQUIRED: [&str; 5] = [
 /// Says what in a data set breaks it.
 type Rule = fn(&Path) -> Vec<String>;
 
-/// A session with form, screening and ratings, a trial run of the same subject, and a simulation.
-fn data_sets() -> (Place, [PathBuf; 2]) {
+/// A session with form, screening and ratings and a trial run of the same subject; a simulation; whole sessions of pairs
+/// on two bars, and of single pictures on five grades.
+fn data_sets() -> (Place, Vec<PathBuf>) {
     let mut place = place();
     let consent = place.study.protocol.session.consent.clone().unwrap();
     for pilot in [None, Some(10.0)] {
@@ -56,7 +59,13 @@ fn data_sets() -> (Place, [PathBuf; 2]) {
     let simulated = place.folder().join("simulated");
     let stimuli = &place.options.stimuli_dir;
     simulate(&place.study, stimuli, &simulated, 2, 1, &|_, _| {}).unwrap();
-    let roots = [place.options.data_dir.clone(), simulated];
+    let mut roots = vec![place.options.data_dir.clone(), simulated];
+    for layout in [Layout::Dscqs, Layout::Single] {
+        let data = format!("{layout:?}");
+        let other = resumed::place(&place, &data, (1, layout, false, false));
+        resumed::sit(&other, &[]);
+        roots.push(other.options.data_dir.clone());
+    }
     (place, roots)
 }
 
@@ -295,6 +304,29 @@ fn a_sidecar_belongs_to_a_table_and_replaces_nothing_of_the_description() {
     hold(broken_sidecars);
 }
 
+/// Not a rule of the standard but of ours: nobody but the owner may read what a session or an export leaves.
+#[test]
+fn only_the_owner_may_read_any_file() {
+    let (place, mut roots) = data_sets();
+    let (options, bids) = (&place.options, place.folder().join("bids"));
+    export_bids(&place.study, &options.stimuli_dir, &options.data_dir, &bids).unwrap();
+    roots.push(bids);
+    let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
+    for root in roots {
+        let all = files(&root);
+        assert!(all.len() >= 5);
+        for path in all {
+            assert_eq!(mode(&path), 0o600, "{}", path.display());
+            assert_eq!(mode(path.parent().unwrap()), 0o700, "{}", path.display());
+        }
+    }
+    let all = files(&options.data_dir);
+    for part in ["timing", "private", "task-form", "task-screening"] {
+        let has_it = |path: &PathBuf| path.to_string_lossy().contains(part);
+        assert!(all.iter().any(has_it), "{part}");
+    }
+}
+
 #[test]
 fn every_column_is_described_with_its_unit() {
     hold(broken_columns);
@@ -310,7 +342,8 @@ type Change = (&'static str, &'static str, &'static str);
 
 #[test]
 fn each_rule_finds_what_breaks_it() {
-    let (place, [root, _]) = data_sets();
+    let (place, roots) = data_sets();
+    let root = roots[0].clone();
     let ratings = "session-1_task-rating_data.csv";
     let sidecar = "session-1_task-rating_data.json";
     let about = "dataset_description.json";
