@@ -11,6 +11,8 @@ mod display;
 mod driver_swaps;
 #[path = "window_session/experimenters_view.rs"]
 mod experimenters_view;
+#[path = "window_session/laboratory.rs"]
+mod laboratory;
 #[path = "window_session/layouts.rs"]
 mod layouts;
 #[path = "window_session/picture_study.rs"]

@@ -5,9 +5,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use experiment::trials;
+use experiment::{First, trials};
 use protocols::rating::Phase;
-use protocols::{LevelBlocks, OrderScheme, RunLimit, Study};
+use protocols::{Layout, LevelBlocks, OrderScheme, ResponseStyle, RunLimit, Study};
 
 fn paper() -> Study {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../protocols/meyer-liu-1992.toml");
@@ -174,6 +174,40 @@ fn over_100_000_orders_no_image_of_a_level_prefers_a_place() {
         .sum();
     // 12 x 26 = 312 degrees of freedom, mean 312, SD 25; five SDs.
     assert!((chi_square - 312.0).abs() < 125.0, "{chi_square}");
+}
+
+/// By lot means by a fair one: over 100,008 pairs, whichever image is rated, and whichever came first before.
+#[test]
+fn over_100_000_pairs_test_and_reference_come_first_equally_often() {
+    let mut study = paper();
+    let plan = &mut study.protocol.session;
+    plan.layout = Layout::Dscqs;
+    plan.response = ResponseStyle::Continuous;
+    let mut of_image: BTreeMap<String, [f64; 2]> = BTreeMap::new();
+    let mut after = [[0.0; 2]; 2];
+    for subject in 0..3704 {
+        let id = format!("S{subject}").parse().unwrap();
+        let trials = trials(&study, &id, 1).unwrap();
+        let firsts: Vec<usize> = trials[3..]
+            .iter()
+            .map(|trial| usize::from(trial.first == First::Reference))
+            .collect();
+        for (trial, &first) in trials[3..].iter().zip(&firsts) {
+            let image = trial.stimulus_id.to_string();
+            of_image.entry(image).or_insert([0.0; 2])[first] += 1.0;
+        }
+        for pair in firsts.windows(2) {
+            after[pair[0]][pair[1]] += 1.0;
+        }
+    }
+    assert_eq!(of_image.len(), 27);
+    let against_half = |[one, other]: &[f64; 2]| (one - other).powi(2) / (one + other);
+    let chi_square: f64 = of_image.values().map(against_half).sum();
+    // 27 degrees of freedom, mean 27, SD 7.3; five SDs.
+    assert!((chi_square - 27.0).abs() < 37.0, "{chi_square}");
+    let chi_square: f64 = after.iter().map(against_half).sum();
+    // Two degrees of freedom: beyond 20.7 with a chance of e^(-20.7 / 2) = 3e-5.
+    assert!(chi_square < 20.7, "{chi_square}");
 }
 
 #[test]

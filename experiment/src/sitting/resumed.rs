@@ -161,8 +161,8 @@ impl<'a> Subject<'a> {
 
     fn takes(&mut self, happening: Happening) {
         match happening {
-            Happening::GoOn(frames) => (0..frames).for_each(|_| self.frame(true)),
-            Happening::Dawdle(frames) => (0..frames).for_each(|_| self.frame(false)),
+            Happening::GoOn(frames) => (0..frames).for_each(|_| self.go_on()),
+            Happening::Dawdle(frames) => (0..frames).for_each(|_| self.frame()),
             Happening::Key(key) => self.event(Event::Key(key)),
             Happening::Press(button) => self.event(Event::Press(button)),
             Happening::Release(button) => self.event(Event::Release(button)),
@@ -172,7 +172,7 @@ impl<'a> Subject<'a> {
             Happening::Stop => self.order(&Order::Stop),
             Happening::Escape => {
                 self.event(Event::Key(Key::Escape));
-                (0..2).for_each(|_| self.frame(false));
+                (0..2).for_each(|_| self.frame());
                 self.click(Button::Stop);
             }
             Happening::Death => self.resume(),
@@ -207,14 +207,17 @@ impl<'a> Subject<'a> {
         self.event(Event::Release(Some(button)));
     }
 
-    fn frame(&mut self, is_willing: bool) {
+    fn frame(&mut self) {
         self.at_s += 1.0 / 60.0;
+        self.event(Event::Frame);
+    }
+
+    /// A frame, and what the subject does when it stands.
+    fn go_on(&mut self) {
+        self.frame();
         if self.is_in_session() {
-            self.event(Event::Frame);
-        }
-        if is_willing && self.is_in_session() {
             self.reply_to_screen();
-        } else if is_willing && !self.is_done {
+        } else if !self.is_done {
             self.reply_to_intake();
         }
     }
@@ -358,7 +361,7 @@ pub(super) fn sit(place: &Place, happenings: &[Happening]) -> Vec<usize> {
         if subject.is_done {
             return subject.begun_at;
         }
-        subject.frame(true);
+        subject.go_on();
     }
     panic!("the session is stuck");
 }
