@@ -65,6 +65,7 @@ fn station_lines(study: &Study, stimuli: &Path, station: &StationFile) -> Vec<St
     let behind = number(station.background_cd_m2, "cd/m2");
     let mut lines = vec![
         format!("station: {advice}"),
+        format!("refresh: {}", station.refresh_in_words()),
         format!("colour: {}", station.color.in_words()),
         format!("peak luminance: {peak} (ITU-R BT.500 advises 70 to 250 in a laboratory)"),
         format!("lights and surround: {surround} (BT.500: dim, a background of 15 % of the peak)"),

@@ -25,6 +25,10 @@ pub(crate) fn measure(arguments: &StationArguments) -> anyhow::Result<()> {
         };
     };
     let before = StationFile::read(&path).ok();
+    let same = before
+        .as_ref()
+        .filter(|before| before.monitor == arguments.monitor);
+    let refresh = same.and_then(|before| before.refresh);
     let mut screens = before.map(|before| before.screens).unwrap_or_default();
     if let Some(monitor) = &arguments.monitor {
         screens.insert(monitor.clone(), ScreenSize { width_mm, width_px });
@@ -41,6 +45,7 @@ pub(crate) fn measure(arguments: &StationArguments) -> anyhow::Result<()> {
         room_lux: arguments.room_lux,
         experimenter_monitor: arguments.experimenter_monitor.clone(),
         not_native_because: arguments.not_native_because.clone(),
+        refresh,
         screens,
     };
     if arguments.distance_cm.is_none() {

@@ -63,6 +63,16 @@ pub enum ExperimentError {
         /// The width that was measured.
         measured_px: u32,
     },
+    /// Frames follow each other more slowly than the protocol allows.
+    #[error(
+        "found {found_hz:.2} frames a second, expected at least {lowest_hz} (session.lowest_refresh_hz); set the monitor to a higher rate, and close what keeps the computer busy"
+    )]
+    TooFewFrames {
+        /// The rate by the median interval.
+        found_hz: f64,
+        /// What the protocol asks for.
+        lowest_hz: f64,
+    },
     /// The monitor is another than the one that was measured.
     #[error(
         "found the monitor \"{found}\", expected \"{measured}\", which the station was measured on; leave --monitor out, or measure this one: acuity station P --window --monitor {found}"

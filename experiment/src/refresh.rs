@@ -4,6 +4,8 @@ use serde::{Deserialize, Serialize};
 
 /// How far an interval may lie from a whole number of refreshes, as a part of one.
 const TOLERANCE: f64 = 0.15;
+/// How far the rate may lie below the lowest that is asked for: 59.94 Hz is as good as 60.
+const RATE_TOLERANCE: f64 = 0.02;
 /// The part of the intervals that must lie so near.
 const MOST: f64 = 0.95;
 
@@ -57,6 +59,16 @@ impl Refresh {
         }
     }
 
+    /// Frames a second, by the median interval.
+    pub fn rate_hz(self) -> f64 {
+        1e3 / self.median_ms
+    }
+
+    /// Whether there are so many frames a second, within 2 %.
+    pub fn reaches(self, lowest_hz: f64) -> bool {
+        self.rate_hz() >= lowest_hz * (1.0 - RATE_TOLERANCE)
+    }
+
     /// What the data and the experimenter should know.
     pub fn in_words(self) -> String {
         let lock = match self.is_locked {
@@ -65,8 +77,12 @@ impl Refresh {
             None => "not known to be locked: the display names no refresh rate",
         };
         format!(
-            "{} frames, median {} ms, SD {} ms: {lock}",
-            self.frames, self.median_ms, self.sd_ms
+            "{} frames, mean {} ms, median {} ms ({:.2} Hz), SD {} ms: {lock}",
+            self.frames,
+            self.mean_ms,
+            self.median_ms,
+            self.rate_hz(),
+            self.sd_ms
         )
     }
 }
@@ -95,6 +111,15 @@ mod tests {
         assert_eq!(Refresh::of(&intervals, Some(30.0)).is_locked, Some(false));
         assert_eq!(Refresh::of(&intervals, None).is_locked, None);
         assert_eq!(Refresh::of(&[], Some(60.0)).is_locked, Some(false));
+    }
+
+    /// 59.94 Hz is what monitors call 60; 30 Hz and 75 Hz are neither.
+    #[test]
+    fn a_display_at_30_hz_does_not_reach_60() {
+        let at = |hz: f64| Refresh::of(&[1.0 / hz; 300], Some(hz));
+        assert!(at(59.94).reaches(60.0) && at(75.0).reaches(60.0));
+        assert!(!at(30.0).reaches(60.0) && !at(58.0).reaches(60.0));
+        assert!((at(30.0).rate_hz() - 30.0).abs() < 0.01);
     }
 
     #[test]

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use protocols::{Access, InputError, ReadError, Study, Viewing, write_atomically};
 use serde::{Deserialize, Serialize};
 
-use crate::{Display, DisplayColor, ExperimentError};
+use crate::{Display, DisplayColor, ExperimentError, Refresh};
 
 /// A computer's screen and chair, as they were measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,6 +46,9 @@ pub struct StationFile {
     /// What the display's colours are taken for.
     #[serde(default)]
     pub color: DisplayColor,
+    /// The refresh of the monitor as it was last measured here.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refresh: Option<Refresh>,
     /// Every monitor of this computer that was measured, by its name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub screens: BTreeMap<String, ScreenSize>,
@@ -162,6 +165,7 @@ impl StationFile {
     ///     room_lux: None,
     ///     experimenter_monitor: None,
     ///     not_native_because: None,
+    ///     refresh: None,
     ///     screens: std::collections::BTreeMap::new(),
     /// };
     /// assert!((station.degrees_per_pixel() - 0.019).abs() < 1e-12);
@@ -187,12 +191,21 @@ impl StationFile {
         )
     }
 
-    /// Whether the station keeps to the study's tolerance, if it has one.
+    /// The refresh as it was last measured, in words.
+    pub fn refresh_in_words(&self) -> String {
+        self.refresh.map_or_else(
+            || "not measured here; every session measures it".to_owned(),
+            Refresh::in_words,
+        )
+    }
+
+    /// Whether the station keeps to the study's tolerance and lowest refresh, if it has them.
     ///
     /// # Errors
     ///
-    /// The angle of a pixel differs by more than the tolerance.
+    /// The angle of a pixel differs by more than the tolerance, or the display was found to be slower.
     pub fn check_for(&self, study: &Study, path: &Path) -> Result<(), InputError> {
+        self.check_refresh(study, path)?;
         let Some(tolerance) = study.protocol.session.viewing_tolerance else {
             return Ok(());
         };
@@ -208,6 +221,20 @@ impl StationFile {
             self.distance_cm_for(study.protocol.viewing)
         );
         Err(InputError::new(path, found, expected).remedy(remedy))
+    }
+
+    fn check_refresh(&self, study: &Study, path: &Path) -> Result<(), InputError> {
+        let lowest_hz = study.protocol.session.lowest_refresh_hz;
+        match (self.refresh, lowest_hz) {
+            (Some(refresh), Some(lowest_hz)) if !refresh.reaches(lowest_hz) => {
+                let found = format!("a refresh of {:.2} Hz", refresh.rate_hz());
+                let expected =
+                    format!("at least {lowest_hz} Hz: the protocol has session.lowest_refresh_hz");
+                let remedy = "set the monitor to a higher rate and measure it again: acuity station P --window";
+                Err(InputError::new(path, found, expected).remedy(remedy))
+            }
+            _ => Ok(()),
+        }
     }
 }
 
@@ -252,6 +279,7 @@ mod tests {
             room_lux: Some(20.0),
             experimenter_monitor: Some("DP-2".to_owned()),
             not_native_because: Some("a cathode-ray tube".to_owned()),
+            refresh: Some(Refresh::of(&[1.0 / 60.0; 300], None)),
             screens: BTreeMap::from([(
                 "DP-1".to_owned(),
                 ScreenSize {
@@ -307,6 +335,26 @@ mod tests {
         }
         fs::write(&path, &text[..text.len() / 2]).unwrap();
         assert!(StationFile::read(&path).is_err());
+    }
+
+    /// A display at 30 Hz, which a protocol that asks for 60 does not take.
+    #[test]
+    fn a_display_that_was_found_slow_is_refused_where_the_protocol_asks_for_more() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut study = small_study(folder.path());
+        let slow = StationFile {
+            refresh: Some(Refresh::of(&[1.0 / 30.0; 300], Some(30.0))),
+            ..station()
+        };
+        let path = Path::new("station.toml");
+        slow.check_for(&study, path).unwrap();
+        study.protocol.session.lowest_refresh_hz = Some(60.0);
+        station().check_for(&study, path).unwrap();
+        let error = slow.check_for(&study, path).unwrap_err().to_string();
+        assert!(
+            error.contains("30.00 Hz") && error.contains("60"),
+            "{error}"
+        );
     }
 
     #[test]

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use protocols::{Study, Viewing};
 
 use crate::color_draft::{ColorDraft, ColorSource};
-use crate::{Patch, ScreenSize, StationFile};
+use crate::{Patch, Refresh, ScreenSize, StationFile};
 
 /// A bank card: ISO/IEC 7810, format ID-1.
 pub(crate) const CARD_MM: [f64; 2] = [85.60, 53.98];
@@ -65,6 +65,8 @@ pub(crate) struct StationDraft {
     pub(crate) surround: String,
     pub(crate) experimenter_monitor: Option<String>,
     pub(crate) not_native_because: String,
+    /// The refresh, and the monitor that it was measured on.
+    refresh: Option<(Option<String>, Refresh)>,
     screens: BTreeMap<String, ScreenSize>,
 }
 
@@ -86,11 +88,15 @@ impl StationDraft {
             surround: String::new(),
             experimenter_monitor: None,
             not_native_because: String::new(),
+            refresh: None,
             screens: BTreeMap::new(),
         };
         if let Some(before) = before {
             let text = |number: Option<f64>| number.map_or_else(String::new, |n| n.to_string());
             draft.screens = before.screens;
+            draft.refresh = before
+                .refresh
+                .map(|refresh| (before.monitor.clone(), refresh));
             if let Some(monitor) = before.monitor {
                 draft.screens.entry(monitor).or_insert(ScreenSize {
                     width_mm: before.width_mm,
@@ -139,6 +145,11 @@ impl StationDraft {
             self.set_width_mm(known.width_mm);
             self.width_typed = format!("{:.1}", known.width_mm);
         }
+    }
+
+    /// The refresh of the present screen has been measured.
+    pub(crate) fn set_refresh(&mut self, refresh: Refresh) {
+        self.refresh = Some((self.screen.name.clone(), refresh));
     }
 
     /// How many pixels are as wide as the card.
@@ -257,6 +268,10 @@ impl StationDraft {
             surround: words(&self.surround),
             background_cd_m2: self.background_cd_m2().map_err(on("Room"))?,
             room_lux: self.room_lux().map_err(on("Room"))?,
+            refresh: self
+                .refresh
+                .as_ref()
+                .and_then(|(monitor, refresh)| (*monitor == self.screen.name).then_some(*refresh)),
             experimenter_monitor: self.experimenter_monitor.clone(),
             not_native_because: words(&self.not_native_because),
             color: self.color.color().map_err(on("Colour"))?,

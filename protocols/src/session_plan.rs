@@ -40,6 +40,10 @@ pub struct SessionPlan {
     /// will do.
     #[serde(default)]
     pub viewing_tolerance: Option<f64>,
+    /// The fewest frames a second that a session may be shown with; without it every rate is recorded and none is
+    /// refused.
+    #[serde(default)]
+    pub lowest_refresh_hz: Option<f64>,
     /// Whether a corner of the screen is white while the test image stands, and black otherwise, for a
     /// photodiode.
     #[serde(default)]
@@ -101,6 +105,7 @@ impl SessionPlan {
         self.response_fault()
             .or_else(|| self.response_time_fault())
             .or_else(|| self.tolerance_fault())
+            .or_else(|| self.refresh_fault())
             .or_else(|| self.order.fault())
             .or_else(|| self.consent.as_ref()?.fault())
             .or_else(|| form_fault(&self.form, factors))
@@ -146,6 +151,14 @@ impl SessionPlan {
         (!(0.001..=1.0).contains(&tolerance)).then(|| {
             let expected = "a part from 0.001 to 1, such as 0.02 for 2 %";
             ("session.viewing_tolerance", tolerance.to_string(), expected)
+        })
+    }
+
+    fn refresh_fault(&self) -> Option<(&'static str, String, &'static str)> {
+        let lowest_hz = self.lowest_refresh_hz?;
+        (!(1.0..=1000.0).contains(&lowest_hz)).then(|| {
+            let expected = "a rate from 1 to 1000 Hz";
+            ("session.lowest_refresh_hz", lowest_hz.to_string(), expected)
         })
     }
 

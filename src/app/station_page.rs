@@ -204,9 +204,13 @@ impl Form {
             room_lux: None,
             experimenter_monitor: None,
             not_native_because: None,
+            refresh: None,
             color: DisplayColor::Srgb,
             screens: BTreeMap::new(),
         });
+        if station.monitor.as_deref() != monitor {
+            station.refresh = None;
+        }
         station.monitor = monitor.map(str::to_owned);
         (station.width_mm, station.width_px) = (size.width_mm, size.width_px);
         let named = monitor.map(|name| (name.to_owned(), size));

@@ -61,14 +61,7 @@ impl Before {
             }
             Self::Timing { began } => {
                 began.push(now_s);
-                let wanted = match show.pilot {
-                    Some(_) => MEASURED_FRAMES_OF_PILOT,
-                    None => MEASURED_FRAMES,
-                };
-                if began.len() > wanted {
-                    let intervals: Vec<f64> =
-                        began.windows(2).map(|pair| pair[1] - pair[0]).collect();
-                    let refresh = Refresh::of(&intervals, monitor.nominal_hz);
+                if let Some(refresh) = measured(began, show, monitor)? {
                     *self = Self::Proving {
                         proof: Proof::of(&sitting.session),
                         refresh,
@@ -110,6 +103,30 @@ impl Before {
             Self::Nothing => return Ok(true),
         }
         Ok(false)
+    }
+}
+
+/// The refresh by the frames that were begun at these times, once there are enough.
+fn measured(
+    began: &[f64],
+    show: &Show,
+    monitor: &Monitor,
+) -> Result<Option<Refresh>, ExperimentError> {
+    let wanted = match show.pilot {
+        Some(_) => MEASURED_FRAMES_OF_PILOT,
+        None => MEASURED_FRAMES,
+    };
+    if began.len() <= wanted {
+        return Ok(None);
+    }
+    let intervals: Vec<f64> = began.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let refresh = Refresh::of(&intervals, monitor.nominal_hz);
+    match show.plan.lowest_refresh_hz {
+        Some(lowest_hz) if !refresh.reaches(lowest_hz) => Err(ExperimentError::TooFewFrames {
+            found_hz: refresh.rate_hz(),
+            lowest_hz,
+        }),
+        _ => Ok(Some(refresh)),
     }
 }
 

@@ -83,6 +83,7 @@ fn a_station_is_measured_unfit_or_missing() {
         room_lux: None,
         experimenter_monitor: None,
         not_native_because: None,
+        refresh: None,
         screens: std::collections::BTreeMap::new(),
     };
     station.write(&path).unwrap();

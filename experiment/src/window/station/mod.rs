@@ -158,7 +158,12 @@ impl Pages {
                     wish = screen_page::show(ui, &mut self.draft, &self.monitors).or(wish.take());
                 }
                 Page::Distance => distance_page::show(ui, &mut self.draft),
-                Page::Refresh => self.timing.show(ui, self.draft.screen().nominal_hz, now_s),
+                Page::Refresh => {
+                    let nominal_hz = self.draft.screen().nominal_hz;
+                    if let Some(refresh) = self.timing.show(ui, nominal_hz, now_s) {
+                        self.draft.set_refresh(refresh);
+                    }
+                }
                 Page::Color => self.patch = color_page::show(ui, &mut self.draft),
                 Page::Room => room_page::show(ui, &mut self.draft),
             });

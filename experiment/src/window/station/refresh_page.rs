@@ -21,11 +21,17 @@ impl Timing {
         }
     }
 
-    pub(super) fn show(&mut self, ui: &mut Ui, nominal_hz: Option<f64>, now_s: f64) {
+    /// Draws the page; gives the refresh once it is measured.
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        nominal_hz: Option<f64>,
+        now_s: f64,
+    ) -> Option<Refresh> {
         desk::heading(
             ui,
             "Does the window keep to the display's refresh?",
-            "The time from frame to frame over 300 frames. Every session measures it again and writes it into its data.",
+            "The time from frame to frame over 300 frames. It is kept with the station; every session measures it again and writes it into its data.",
         );
         if self.measured.is_none() {
             self.time(nominal_hz, now_s);
@@ -36,18 +42,18 @@ impl Timing {
                     .desired_width(420.0)
                     .text("timing frames"),
             );
-            return;
+            return None;
         }
-        let Some((refresh, intervals_s)) = &self.measured else {
-            return;
-        };
-        facts(ui, refresh);
+        let (refresh, intervals_s) = self.measured.as_ref()?;
+        let refresh = *refresh;
+        facts(ui, &refresh);
         ui.add_space(10.0);
         plot(ui, intervals_s);
         ui.add_space(10.0);
         if ui.button("Measure again").clicked() {
             *self = Self::default();
         }
+        Some(refresh)
     }
 
     /// Takes the beginning of a frame.
