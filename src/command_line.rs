@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use analysis::EffectScale;
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use protocols::{
     Channel, Export, Observer, Quadrature, RayCount, RefinementDriver, Study, SubjectId,
 };
@@ -253,6 +253,15 @@ pub(crate) struct CloseArguments {
     pub(crate) data: DataFolder,
 }
 
+/// The colours of a window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ThemeWord {
+    /// Dark on light.
+    Light,
+    /// Light on dark.
+    Dark,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct StationArguments {
     /// The protocol whose angle is wanted.
@@ -287,6 +296,9 @@ pub(crate) struct StationArguments {
     /// Name of the monitor for the experimenter's view.
     #[arg(long, value_name = "NAME")]
     pub(crate) experimenter_monitor: Option<String>,
+    /// Colours of the window, as the app passes them on [default: dark]
+    #[arg(long, value_enum, requires = "window")]
+    pub(crate) theme: Option<ThemeWord>,
     /// Why the monitor runs at another resolution than its own (a cathode-ray tube, a projector); without it no session does.
     #[arg(long, value_name = "WORDS")]
     pub(crate) not_native_because: Option<String>,

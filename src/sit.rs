@@ -27,17 +27,30 @@ pub(crate) fn check(arguments: &CheckArguments) -> anyhow::Result<ExitCode> {
     let stimuli = arguments.stimuli.of(&study);
     let data = arguments.data.of(&study);
     let mut missing = experiment::check_ready(&study, &stimuli, &data);
-    match experiment::station_for(&study, arguments.station.as_deref()) {
+    let station = match experiment::station_for(&study, arguments.station.as_deref()) {
         Ok(Some(station)) => {
             for line in station_lines(&study, &stimuli, &station) {
                 console::print(line)?;
             }
+            Some(station)
         }
-        Ok(None) => console::print(
-            "station: not measured (acuity station); colour: sRGB by declaration, nothing was measured",
-        )?,
-        Err(error) => missing.push(error.to_string()),
+        Ok(None) => {
+            console::print(
+                "station: not measured (acuity station); colour: sRGB by declaration, nothing was measured",
+            )?;
+            None
+        }
+        Err(error) => {
+            missing.push(error.to_string());
+            None
+        }
+    };
+    let screen = experiment::check_screen(station.as_ref());
+    for line in screen.lines {
+        console::print(line)?;
     }
+    console::print(refresh_line(&study, &data))?;
+    missing.extend(screen.faults);
     if missing.is_empty() {
         console::print("ready")?;
         return Ok(ExitCode::SUCCESS);
@@ -46,6 +59,18 @@ pub(crate) fn check(arguments: &CheckArguments) -> anyhow::Result<ExitCode> {
         console::print(format!("not ready: {line}"))?;
     }
     Ok(ExitCode::from(2))
+}
+
+/// The refresh of the display as the last session measured it.
+fn refresh_line(study: &Study, data: &Path) -> String {
+    let sessions = experiment::session_list(study, data).unwrap_or_default();
+    let measured = sessions.sessions.iter();
+    let measured = measured.filter(|session| session.refresh.is_some());
+    let last = measured.max_by(|left, right| left.started_at.cmp(&right.started_at));
+    match last.and_then(|session| session.refresh) {
+        Some(refresh) => format!("refresh: {}, as last measured", refresh.in_words()),
+        None => "refresh: measured over 300 frames when a session begins, and in acuity station --window".to_owned(),
+    }
 }
 
 /// What is known of the screen and the room, a line each.
@@ -80,11 +105,13 @@ fn station_lines(study: &Study, stimuli: &Path, station: &StationFile) -> Vec<St
     // What is wrong with the set is said below, among what is not ready.
     if let Ok((set, lacking)) = set {
         let clipped = lacking.values().filter(|&&count| count > 0).count();
-        if let Some((id, most)) = lacking.iter().max_by_key(|(_, count)| **count) {
-            let whole = set.images().len();
-            lines.push(format!(
+        let whole = set.images().len();
+        match lacking.iter().max_by_key(|(_, count)| **count) {
+            Some((id, most)) if clipped > 0 => lines.push(format!(
                 "gamut: {clipped} of {whole} images have pixels that this display lacks, {id} the most ({most})"
-            ));
+            )),
+            Some(_) => lines.push(format!("gamut: this display has every pixel of all {whole} images")),
+            None => {}
         }
     }
     lines

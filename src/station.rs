@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use anyhow::Context as _;
+use eframe::egui::Theme;
 use experiment::{DisplayColor, MeasuredColor, ScreenSize, StationFile};
 use protocols::{Study, Viewing};
 
-use crate::command_line::StationArguments;
+use crate::command_line::{StationArguments, ThemeWord};
 use crate::console;
 
 /// Measures the station in a window, or writes down what was typed, and says where to sit.
@@ -17,7 +18,12 @@ pub(crate) fn measure(arguments: &StationArguments) -> anyhow::Result<()> {
     let path =
         path.context("found no HOME, expected a folder for the station; name a file with --out")?;
     let (Some(width_mm), Some(width_px)) = (arguments.width_mm, arguments.width_px) else {
-        let saved = experiment::measure_station(&study, &path, arguments.monitor.clone())?;
+        let saved = experiment::measure_station(
+            &study,
+            &path,
+            arguments.monitor.clone(),
+            arguments.theme.map(Theme::from),
+        )?;
         return match saved {
             Some(station) => print(&station, viewing, &path),
             None => console::print("closed without saving; the station is as it was")
@@ -54,6 +60,15 @@ pub(crate) fn measure(arguments: &StationArguments) -> anyhow::Result<()> {
     station.color.display(&path)?;
     station.write(&path)?;
     print(&station, viewing, &path)
+}
+
+impl From<ThemeWord> for Theme {
+    fn from(word: ThemeWord) -> Self {
+        match word {
+            ThemeWord::Light => Self::Light,
+            ThemeWord::Dark => Self::Dark,
+        }
+    }
 }
 
 /// Where to sit, what the colours are, and where that stands.

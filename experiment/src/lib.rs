@@ -85,4 +85,4 @@ pub use sitting::{RunOptions, SessionEnd, ViewProgram, close_session};
 pub use station::{ScreenSize, StationFile, station_for};
 pub use stimulus_set::{ScreenImage, StimulusSet, faults as stimulus_faults};
 pub use view::{Glance, Order};
-pub use window::{experimenters_view, measure_station, run};
+pub use window::{ScreenReport, check_screen, experimenters_view, measure_station, run};

@@ -96,6 +96,12 @@ impl StationPage {
             let mut words = vec!["station".into()];
             words.push(around.state.study.path.clone().into_os_string());
             words.push("--window".into());
+            let theme = if ui.visuals().dark_mode {
+                "dark"
+            } else {
+                "light"
+            };
+            words.extend(["--theme".into(), theme.into()]);
             self.measuring = Some(launch(ui.ctx(), around.tools, words));
         }
         if look::secondary(ui, Enabled::Yes, form).clicked() {

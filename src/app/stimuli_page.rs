@@ -99,8 +99,13 @@ impl StimuliPage {
         } else {
             look::primary(ui, around.hold.is_none().into(), "Make the stimuli")
         };
-        if let Some(reason) = around.hold {
-            look::weak(ui, reason);
+        match (around.hold, &around.state.stimuli) {
+            (Some(reason), _) => look::weak(ui, reason),
+            (None, StimuliState::Damaged(_) | StimuliState::Older(_)) => look::weak(
+                ui,
+                "This mends what is said below: the same protocol gives the same images, byte for byte.",
+            ),
+            (None, _) => {}
         }
         if button.clicked() {
             self.start(ui, around.state);

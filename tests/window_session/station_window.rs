@@ -9,7 +9,7 @@ use std::time::Duration;
 use experiment::StationFile;
 
 use crate::display::{Display, Manager, SIZE, Screenshot};
-use crate::{PROTOCOL, output_of};
+use crate::{PROTOCOL, Place, output_of};
 
 /// The outline's line stands upright at its left and right end: the most distant columns of its blue in the left part.
 fn outline_px(shot: &Screenshot) -> Option<usize> {
@@ -65,4 +65,50 @@ fn an_outline_made_as_wide_as_a_card_is_the_size_of_the_screen() {
     assert!(text.contains("82.7 cm"), "{text}");
     let mode = fs::metadata(&path).unwrap().permissions().mode();
     assert_eq!(mode & 0o777, 0o600);
+}
+
+/// Where there is a display, `check` asks it; Xvfb has one monitor, "screen".
+#[test]
+fn check_asks_the_display_for_the_monitor_of_the_station() {
+    let Some(display) = Display::open(Manager::None) else {
+        return;
+    };
+    let place = Place::new();
+    let station = place.folder.path().join("acuity/station.toml");
+    fs::create_dir(station.parent().unwrap()).unwrap();
+    let check = |text: &str| {
+        fs::write(&station, text).unwrap();
+        let mut command = display.command(env!("CARGO_BIN_EXE_acuity"));
+        let output = command
+            .args(["check", PROTOCOL, "--stimuli"])
+            .arg(place.folder.path().join("stimuli"))
+            .arg("--data")
+            .arg(place.folder.path().join("data"))
+            .env("XDG_CONFIG_HOME", place.folder.path())
+            .output()
+            .unwrap();
+        (
+            output.status.code(),
+            String::from_utf8(output.stdout).unwrap(),
+        )
+    };
+    let good = "monitor = \"screen\"\nwidth_mm = 431.26\nwidth_px = 1280\ndistance_cm = 101.6\n";
+    let (code, said) = check(good);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(
+        said.contains("screen: monitor screen, 1280 x 1024 pixels"),
+        "{said}"
+    );
+    assert!(said.trim_end().ends_with("ready"), "{said}");
+    for (old, new, named) in [
+        ("\"screen\"", "\"DP-7\"", "expected one named \"DP-7\""),
+        ("width_px = 1280", "width_px = 1920", "expected the 1920"),
+    ] {
+        let (code, said) = check(&good.replace(old, new));
+        assert_eq!(code, Some(2), "{said}");
+        assert!(
+            said.contains("not ready: ") && said.contains(named),
+            "{said}"
+        );
+    }
 }

@@ -53,9 +53,6 @@ impl Before {
                 if is_there && gate.is_open(context, sizes, now_s)? {
                     check_fit(needed_px(&show.plan, show.pictures.image_px), sizes)?;
                     check_station(show.station.as_ref(), monitor, sizes)?;
-                    if let Some(mode) = monitor.mode() {
-                        mode.check(show.station.as_ref())?;
-                    }
                     *self = Self::Timing { began: vec![now_s] };
                 }
             }
@@ -75,12 +72,10 @@ impl Before {
                         compared_px: proof.compared_px(),
                         refresh: Some(*refresh),
                         tells_swaps,
-                        monitor: monitor.name.clone(),
-                        native_px: monitor.mode().and_then(|mode| mode.native),
                         measured: show.station.clone(),
                         out_of_gamut_px: show.out_of_gamut_px.clone(),
                         white_luminance: show.display.white_luminance(),
-                        ..station(sizes)
+                        ..station(monitor, sizes)
                     };
                     let compared = proof.in_words();
                     let session = &mut sitting.session;
@@ -130,7 +125,7 @@ fn measured(
     }
 }
 
-/// Whether this is the screen that was measured, at its own resolution.
+/// Whether this is the screen that was measured, one of its pixels for each of an image.
 fn check_station(
     station: Option<&StationFile>,
     monitor: &Monitor,
@@ -145,21 +140,20 @@ fn check_station(
             measured: measured.clone(),
         });
     }
-    match station {
-        Some(station) if station.width_px != sizes.monitor_px[0] => {
-            Err(ExperimentError::OtherScreen {
-                found_px: sizes.monitor_px[0],
-                measured_px: station.width_px,
-            })
-        }
-        _ => Ok(()),
+    let other = station.filter(|station| station.width_px != sizes.monitor_px[0]);
+    if let Some(station) = other {
+        return Err(ExperimentError::OtherScreen {
+            found_px: sizes.monitor_px[0],
+            measured_px: station.width_px,
+        });
     }
+    monitor.mode().map_or(Ok(()), |mode| mode.check(station))
 }
 
-fn station(sizes: Sizes) -> Station {
+fn station(monitor: &Monitor, sizes: Sizes) -> Station {
     Station {
-        monitor: None,
-        native_px: None,
+        monitor: monitor.name.clone(),
+        native_px: monitor.mode().and_then(|mode| mode.native),
         refresh: None,
         tells_swaps: false,
         compared_px: 0,

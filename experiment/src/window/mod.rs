@@ -10,6 +10,8 @@ mod gate;
 mod geometry;
 mod input;
 mod intake_page;
+#[cfg(test)]
+mod mid_grey;
 mod monitor;
 mod paint;
 mod proof;
@@ -35,6 +37,7 @@ use crate::script_fonts::ScriptFonts;
 use app::{Aside, SessionApp, Show};
 use clock::Clock;
 use paint::Pictures;
+pub use screen_mode::{ScreenReport, check_screen};
 use screen_watch::ScreenWatch;
 pub use station::measure_station;
 use swap_watch::SwapWatch;

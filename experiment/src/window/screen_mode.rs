@@ -10,6 +10,7 @@ use std::error::Error;
 
 use x11rb::connection::Connection as _;
 use x11rb::protocol::randr::{ConnectionExt as _, GetCrtcInfoReply, ModeInfo, Rotation};
+use x11rb::protocol::xproto::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
 
 use crate::{ExperimentError, StationFile};
@@ -28,7 +29,15 @@ pub(crate) struct ScreenMode {
 impl ScreenMode {
     /// The mode of the monitor with this name; `None` if the X server does not say.
     pub(crate) fn of(monitor: &str) -> Option<Self> {
-        ask(monitor).ok().flatten()
+        let outputs = outputs().ok().flatten()?;
+        let mut outputs = outputs.into_iter();
+        let output = outputs.find(|output| output.name == monitor);
+        output.map(|output| output.mode)
+    }
+
+    /// Whether enough is known to say that it is one to one, or that it is not.
+    pub(crate) fn is_known(self) -> bool {
+        self.native.is_some() || self.area != self.mode
     }
 
     /// Whether one pixel of an image is one pixel of the monitor.
@@ -57,25 +66,120 @@ impl ScreenMode {
     }
 }
 
-fn ask(monitor: &str) -> Result<Option<ScreenMode>, Box<dyn Error>> {
+/// A monitor that shows something.
+struct Output {
+    name: String,
+    mode: ScreenMode,
+    nominal_hz: Option<f64>,
+}
+
+/// Every monitor that shows something; `None` on Wayland, where the X server does not know the screen.
+fn outputs() -> Result<Option<Vec<Output>>, Box<dyn Error>> {
     let (connection, screen) = RustConnection::connect(None)?;
+    let wayland = connection.query_extension(b"XWAYLAND")?.reply()?;
+    if wayland.present {
+        return Ok(None);
+    }
     let root = connection.setup().roots[screen].root;
     let resources = connection
         .randr_get_screen_resources_current(root)?
         .reply()?;
+    let mut outputs = Vec::new();
     for output in resources.outputs {
         let at = resources.config_timestamp;
         let output = connection.randr_get_output_info(output, at)?.reply()?;
-        if output.name != monitor.as_bytes() || output.crtc == 0 {
+        if output.crtc == 0 {
             continue;
         }
         let crtc = connection.randr_get_crtc_info(output.crtc, at)?.reply()?;
         let mode = |id: u32| resources.modes.iter().find(|mode| mode.id == id);
         let preferred = (output.num_preferred > 0).then(|| output.modes.first());
         let native = preferred.flatten().and_then(|&id| mode(id));
-        return Ok(mode(crtc.mode).map(|mode| screen_mode(&crtc, mode, native)));
+        outputs.extend(mode(crtc.mode).map(|mode| Output {
+            name: String::from_utf8_lossy(&output.name).into_owned(),
+            mode: screen_mode(&crtc, mode, native),
+            nominal_hz: nominal_hz(mode),
+        }));
     }
-    Ok(None)
+    Ok(Some(outputs))
+}
+
+/// Pixels a second by pixels a frame, blanking included.
+fn nominal_hz(mode: &ModeInfo) -> Option<f64> {
+    let pixels = f64::from(mode.htotal) * f64::from(mode.vtotal);
+    (mode.dot_clock > 0 && pixels > 0.0).then(|| f64::from(mode.dot_clock) / pixels)
+}
+
+/// What the X server says of the subject's monitor, in words.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ScreenReport {
+    /// What is known.
+    pub lines: Vec<String>,
+    /// What would end a session before its first screen.
+    pub faults: Vec<String>,
+}
+
+/// Asks the X server for the station's monitor, or for the first; where no display is named nothing is asked.
+pub fn check_screen(station: Option<&StationFile>) -> ScreenReport {
+    let display = std::env::var("DISPLAY").unwrap_or_default();
+    if display.is_empty() {
+        return ScreenReport::default();
+    }
+    let wanted = station.and_then(|station| station.monitor.as_deref());
+    match outputs() {
+        Ok(Some(outputs)) => report(&outputs, station, wanted),
+        Ok(None) => ScreenReport {
+            lines: vec!["screen: Wayland, which says nothing of its monitors; look into the desktop's settings for 100 % and the own resolution".to_owned()],
+            faults: Vec::new(),
+        },
+        Err(error) => ScreenReport {
+            lines: Vec::new(),
+            faults: vec![format!("display: found {display:?}, which does not answer ({error}), expected an X11 display for the session's window; log in to the desktop")],
+        },
+    }
+}
+
+fn report(outputs: &[Output], station: Option<&StationFile>, wanted: Option<&str>) -> ScreenReport {
+    let mut report = ScreenReport::default();
+    let is_wanted = |output: &&Output| wanted.is_none_or(|wanted| wanted == output.name);
+    let Some(Output {
+        name,
+        mode,
+        nominal_hz,
+    }) = outputs.iter().find(is_wanted)
+    else {
+        let names: Vec<&str> = outputs.iter().map(|output| &*output.name).collect();
+        let error = ExperimentError::NoMonitor {
+            wanted: wanted.unwrap_or_default().to_owned(),
+            all: names.join(", "),
+        };
+        report.faults.push(error.to_string());
+        return report;
+    };
+    let [width, height] = mode.area;
+    let own = match mode.native {
+        Some(native) if native == mode.area => "its own resolution".to_owned(),
+        Some([width, height]) => format!("its own are {width} x {height}"),
+        None => "its own resolution is not known".to_owned(),
+    };
+    let hertz = nominal_hz.map_or_else(
+        || "no nominal refresh rate".to_owned(),
+        |hertz| format!("nominal refresh {hertz:.2} Hz"),
+    );
+    let line = format!("screen: monitor {name}, {width} x {height} pixels ({own}), {hertz}");
+    report.lines.push(line);
+    let faults = [
+        mode.check(station).err(),
+        station
+            .filter(|station| station.width_px != width)
+            .map(|station| ExperimentError::OtherScreen {
+                found_px: width,
+                measured_px: station.width_px,
+            }),
+    ];
+    let faults = faults.into_iter().flatten();
+    report.faults.extend(faults.map(|error| error.to_string()));
+    report
 }
 
 /// The sizes, as they lie on the desktop.
@@ -153,8 +257,51 @@ mod tests {
         let because = format!("{station}not_native_because = \"a cathode-ray tube\"\n");
         let explained: StationFile = toml::from_str(&because).unwrap();
         assert!(found.check(Some(&explained)).is_ok());
+        assert!(found.is_known());
         // Where the monitor does not describe itself nothing is known.
         let unknown = screen_mode(&crtc(1920, 1080, Rotation::ROTATE0), &low, None);
-        assert!(unknown.check(None).is_ok());
+        assert!(unknown.check(None).is_ok() && !unknown.is_known());
+    }
+
+    fn at(name: &str, own: &ModeInfo, shown: &ModeInfo) -> Output {
+        let crtc = crtc(shown.width, shown.height, Rotation::ROTATE0);
+        Output {
+            name: name.to_owned(),
+            mode: screen_mode(&crtc, shown, Some(own)),
+            nominal_hz: nominal_hz(shown),
+        }
+    }
+
+    /// 1920 x 1080 at 60 Hz by CEA-861: 148.5 MHz, 2200 x 1125 with blanking.
+    #[test]
+    fn the_report_names_the_monitor_and_what_would_end_a_session() {
+        let full = ModeInfo {
+            dot_clock: 148_500_000,
+            htotal: 2200,
+            vtotal: 1125,
+            ..mode(1920, 1080)
+        };
+        let outputs = [
+            at("eDP-1", &full, &mode(1280, 720)),
+            at("DP-1", &full, &full),
+        ];
+        let station = "monitor = \"DP-1\"\nwidth_mm = 527.0\nwidth_px = 1920\ndistance_cm = 82.0\n";
+        let good: StationFile = toml::from_str(station).unwrap();
+        let found = report(&outputs, Some(&good), good.monitor.as_deref());
+        let line = "screen: monitor DP-1, 1920 x 1080 pixels (its own resolution), nominal refresh 60.00 Hz";
+        assert_eq!(found.lines, [line]);
+        assert!(found.faults.is_empty(), "{:?}", found.faults);
+        for (old, new, named) in [
+            ("DP-1", "DP-9", "eDP-1, DP-1"),
+            ("DP-1", "eDP-1", "its own 1920 x 1080"),
+            ("width_px = 1920", "width_px = 2560", "2560"),
+        ] {
+            let wrong: StationFile = toml::from_str(&station.replace(old, new)).unwrap();
+            let faults = report(&outputs, Some(&wrong), wrong.monitor.as_deref()).faults;
+            assert!(
+                faults.iter().any(|fault| fault.contains(named)),
+                "{faults:?}"
+            );
+        }
     }
 }

@@ -411,6 +411,27 @@ fn a_station_is_typed_and_written() {
 }
 
 #[test]
+fn the_station_s_window_opens_in_the_app_s_theme() {
+    let fixture = Fixture::new();
+    let mut user = User::with(&fixture);
+    for (theme, word) in [("Theme: Dark", "dark"), ("Theme: Light", "light")] {
+        user.launcher.answer(Some(0), "closed without saving");
+        user.click(theme);
+        user.go("Station");
+        user.click("Measure in a window");
+        for _ in 0..400 {
+            user.harness.run_steps(1);
+            if user.is_enabled("Measure in a window") {
+                break;
+            }
+            sleep(Duration::from_millis(5));
+        }
+        let wanted = user.launcher.wanted().pop().unwrap();
+        assert_eq!(wanted[2..], ["--window", "--theme", word]);
+    }
+}
+
+#[test]
 fn every_page_is_whole_at_three_sizes_in_both_themes() {
     let fixture = ready();
     let sessions = fixture.simulate_people(3);

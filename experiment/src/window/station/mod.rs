@@ -58,6 +58,7 @@ impl Page {
 type Outcome = Rc<RefCell<Result<Option<StationFile>, ExperimentError>>>;
 
 /// Measures this computer's screen in a window and writes `path`; `None` if the window was closed without saving.
+/// The window is dark unless a theme is named.
 ///
 /// # Errors
 ///
@@ -67,6 +68,7 @@ pub fn measure_station(
     study: &Study,
     path: &Path,
     monitor: Option<String>,
+    theme: Option<egui::Theme>,
 ) -> Result<Option<StationFile>, ExperimentError> {
     let before = if path.exists() {
         Some(StationFile::read(path)?)
@@ -89,6 +91,10 @@ pub fn measure_station(
     let title = format!("Acuity station - {}", study.protocol.study);
     open(full_screen(&title), |creation| {
         desk::dress(&creation.egui_ctx);
+        // X11 has no theme of its own.
+        creation
+            .egui_ctx
+            .set_theme(theme.unwrap_or(egui::Theme::Dark));
         Ok(Box::new(app))
     })?;
     outcome.replace(Ok(None))
@@ -181,9 +187,20 @@ impl Pages {
                 if ui.add(button.min_size(egui::vec2(0.0, 38.0))).clicked() {
                     self.page = page;
                 }
-                desk::remark(ui, format!("      {}", self.state_of(page)));
+                self.state_below(ui, page);
                 ui.add_space(8.0);
             }
+        });
+    }
+
+    /// How far a page is, below its name, which stands after the number.
+    fn state_below(&self, ui: &mut Ui, page: Page) {
+        ui.scope(|ui| {
+            ui.spacing_mut().interact_size.y = 18.0;
+            ui.horizontal_wrapped(|ui| {
+                ui.add_space(36.0);
+                desk::remark(ui, self.state_of(page));
+            });
         });
     }
 
@@ -274,7 +291,7 @@ impl StationApp {
         {
             return asked.one_to_one.clone();
         }
-        let mode = self.monitor.mode();
+        let mode = self.monitor.mode().filter(|mode| mode.is_known());
         let fault = |error: ExperimentError| ModeFault {
             may_be_right: matches!(error, ExperimentError::NotNative { .. }),
             words: error.to_string(),

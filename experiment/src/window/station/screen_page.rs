@@ -109,7 +109,7 @@ fn outline(ui: &mut Ui, draft: &mut StationDraft, size: egui::Vec2) {
         StrokeKind::Inside,
     );
     let words = "85.60 \u{d7} 53.98 mm";
-    let font = egui::FontId::proportional(16.0);
+    let font = egui::FontId::proportional((width / 10.0).min(16.0));
     painter.text(
         card.center(),
         egui::Align2::CENTER_CENTER,
