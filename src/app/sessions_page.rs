@@ -157,7 +157,10 @@ impl SessionsPage {
             Panel::Close { session, reason } => self.close(ui, around, session, reason),
         }
         if is_starting && self.running.is_none() {
-            self.view_choice(ui, around);
+            ui.scope(|ui| {
+                ui.spacing_mut().item_spacing.y = 0.0;
+                self.view_choice(ui, around);
+            });
         }
     }
 
