@@ -9,12 +9,16 @@ use std::process::Output;
 use acuity::{PROTOCOL, acuity, stderr, text_of};
 
 /// Commands (P is the paper's protocol) that are wrong, and what the message must name.
-const WRONG_COMMANDS: [(&str, &str); 14] = [
+const WRONG_COMMANDS: [(&str, &str); 15] = [
     ("paint", "paint"),
     ("render", "PROTOCOL"),
     ("run P --subject Jane_Doe", "letters"),
     ("run P --subject ../01", "letters"),
     ("run P --subject 01 --pilot 0", "from 1 to 1000"),
+    (
+        "station P --width-mm 400 --width-px 1280 --primaries .64,.33,.3",
+        "eight numbers with commas",
+    ),
     ("simulate P --subjects 0 --seed 1", "0"),
     ("image s.toml --rays-a many --rays-c1c2 1K -o x.exr", "many"),
     (

@@ -251,7 +251,12 @@ fn the_screen_holds_the_very_bytes_of_the_images_on_neutral_grey() {
         return;
     };
     let place = Place::new();
-    for (subject, scale) in [("P1", "1"), ("P125", "1.25"), ("P175", "1.75")] {
+    for (subject, scale) in [
+        ("P1", "1"),
+        ("P125", "1.25"),
+        ("P175", "1.75"),
+        ("P200", "2"),
+    ] {
         check_exposure(&display, &place, subject, scale);
     }
 }

@@ -284,6 +284,9 @@ pub struct SessionTexts {
     /// On the button that goes on.
     #[serde(default = "continue_button")]
     pub continue_button: String,
+    /// Below a number that is being typed: the key that gives it.
+    #[serde(default = "enter_key")]
+    pub enter_key: String,
     /// Asked when the subject wants to stop.
     #[serde(default = "stop_question")]
     pub stop_question: String,
@@ -318,6 +321,10 @@ fn form_fault_text() -> String {
 
 fn continue_button() -> String {
     "Continue".to_owned()
+}
+
+fn enter_key() -> String {
+    "Enter".to_owned()
 }
 
 fn stop_question() -> String {

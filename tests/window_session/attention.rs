@@ -11,8 +11,9 @@ use crate::display::{Display, Manager};
 use crate::picture_study::{CLEAR, picture_on, place, see, see_to_the_end};
 use crate::{CONTINUE, Place, STOP, is_button, is_page, is_scale, output_of, rating_button};
 
-/// Stops a session with three trials of which so many are rated.
+/// Stops a session with three trials of which so many are rated, at the next picture.
 fn stop(display: &Display, child: std::process::Child, rated: usize) {
+    see(display, CLEAR);
     display.key("Escape");
     display.wait_for("the question", |shot| is_button(shot, STOP, 100));
     display.click(STOP);
@@ -57,7 +58,7 @@ fn an_answer_too_soon_is_not_taken_and_one_too_late_sees_the_picture_again() {
 }
 
 /// A window of another program takes the keyboard for a second.
-fn take_focus(display: &Display) {
+pub(crate) fn take_focus(display: &Display) {
     let (server, screen) = x11rb::connect(Some(display.name())).unwrap();
     let root = server.setup().roots[screen].root;
     let window = server.generate_id().unwrap();
@@ -110,7 +111,6 @@ fn rests_questions_and_a_lost_keyboard_interrupt_a_picture_that_is_then_shown_ag
     let row = place.rows("T2")[0].clone();
     assert_eq!((row.stimulus_id.as_str(), row.rating), (name, 4));
     assert_eq!(row.showings, 3);
-    sleep(Duration::from_millis(500));
     stop(&display, child, 1);
     for (event, count) in [
         ("pause", 1),

@@ -19,7 +19,8 @@ use super::swap_watch::SwapWatch;
 use super::view::ViewLink;
 use crate::sitting::Sitting;
 use crate::{
-    Display, Event, ExperimentError, Key, Noted, Screen, Session, SessionEnd, StationFile, Step,
+    Display, Event, ExperimentError, Key, Noted, Reply, Screen, Session, SessionEnd, StationFile,
+    Step,
 };
 
 /// What the subject is to see.
@@ -43,6 +44,13 @@ impl Show {
         let [red, green, blue] = self.display.grey(self.plan.background_srgb);
         Color32::from_rgb(red, green, blue)
     }
+
+    /// Says that a trial run is one.
+    fn mark(&self, brush: &Brush<'_>) {
+        if let Some(speed) = self.pilot {
+            brush.pilot(speed);
+        }
+    }
 }
 
 /// Whether the window has the keyboard, and how often it lost it while images were shown or awaited.
@@ -54,16 +62,24 @@ struct Focus {
 
 impl Focus {
     /// Notes when the window loses the keyboard or gets it again, also within one frame.
-    fn note(&mut self, context: &egui::Context, session: &mut Session, now_s: f64) {
+    ///
+    /// `page` names what stands before the first trial, if it does.
+    fn note(
+        &mut self,
+        context: &egui::Context,
+        session: &mut Session,
+        (page, now_s): (Option<Step>, f64),
+    ) {
         let screen = session.screen();
+        let words = page.map_or_else(|| format!("{screen:?}"), |page| format!("{page:?}"));
         for is_there in context.input(changes_of_focus) {
             let was_there = std::mem::replace(&mut self.is_there, is_there);
             if was_there && !is_there {
                 let is_trial = screen == Screen::Blank || screen.picture().is_some();
                 self.losses += u32::from(is_trial);
-                session.note(Noted::FocusLost, now_s, format!("{screen:?}"));
+                session.note(Noted::FocusLost, now_s, words.clone());
             } else if !was_there && is_there {
-                session.note(Noted::FocusRegained, now_s, format!("{screen:?}"));
+                session.note(Noted::FocusRegained, now_s, words.clone());
             }
         }
     }
@@ -175,6 +191,7 @@ impl SessionApp {
         if !matches!(self.before, Before::Nothing) {
             context.request_repaint();
             context.set_cursor_icon(CursorIcon::None);
+            self.show.mark(&brush);
             let (sitting, show) = (&mut self.sitting, &self.show);
             let times = (now_s, self.aside.swaps.has_heard());
             let frame = (&self.monitor, sizes, times);
@@ -185,10 +202,12 @@ impl SessionApp {
             }
         }
 
-        if self.sitting.intake.step() != Step::Done {
+        let page = Some(self.sitting.intake.step()).filter(|step| *step != Step::Done);
+        self.focus
+            .note(context, &mut self.sitting.session, (page, now_s));
+        if page.is_some() {
             return self.intake(ui, geometry, now_s);
         }
-        self.focus.note(context, &mut self.sitting.session, now_s);
         let screen = self.sitting.session.screen();
         let mut events = input::events(context, geometry, screen, &self.show.plan);
         if context.input(|input| input.viewport().close_requested()) {
@@ -222,9 +241,7 @@ impl SessionApp {
 fn draw(brush: &Brush<'_>, session: &Session, show: &Show) {
     let context = brush.painter.ctx();
     brush.screen(session, &show.pictures);
-    if let Some(speed) = show.pilot {
-        brush.pilot(speed);
-    }
+    show.mark(brush);
     brush.photodiode(session.screen());
     if matches!(session.screen(), Screen::Blank | Screen::Exposure(..)) {
         context.set_cursor_icon(CursorIcon::None);
@@ -250,6 +267,7 @@ impl SessionApp {
         let context = ui.ctx().clone();
         if context.input(|input| input.viewport().close_requested()) {
             context.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.intake_page.ask_to_stop();
         }
         if self.sitting.session.ending().is_some() {
             return self.sitting.leave(now_s).map(Some);
@@ -262,8 +280,17 @@ impl SessionApp {
             display: &self.show.display,
         };
         let intake = &mut self.sitting.intake;
+        let (page, was_asking) = (intake.step(), self.intake_page.is_asking());
         let reply = (self.intake_page).show(ui, &looks, intake);
         intake.shown(now_s);
+        let noted = match (was_asking, self.intake_page.is_asking()) {
+            (false, true) => Some(Noted::Escape),
+            (true, false) => Some(Noted::GoneOn),
+            _ => None,
+        };
+        if let Some(noted) = noted.filter(|_| reply != Some(Reply::Leave)) {
+            (self.sitting.session).note(noted, now_s, format!("{page:?}"));
+        }
         if let Some(reply) = reply {
             let finished = intake.reply(reply, now_s);
             let step = intake.step();
@@ -275,17 +302,13 @@ impl SessionApp {
                 return self.sitting.leave(now_s).map(Some);
             }
         }
-        if let Some(speed) = self.show.pilot {
-            let painter = ui.painter().clone();
-            let brush = Brush {
-                painter: &painter,
-                geometry,
-                plan: &self.show.plan,
-                ground: self.show.ground(),
-                pointer: None,
-            };
-            brush.pilot(speed);
-        }
+        self.show.mark(&Brush {
+            painter: &ui.painter().clone(),
+            geometry,
+            plan: &self.show.plan,
+            ground: self.show.ground(),
+            pointer: None,
+        });
         Ok(None)
     }
 }

@@ -77,16 +77,10 @@ impl Before {
                         white_luminance: show.display.white_luminance(),
                         ..station(monitor, sizes)
                     };
-                    let compared = proof.in_words();
                     let session = &mut sitting.session;
                     session.note(Noted::RefreshMeasured, now_s, refresh.in_words());
-                    session.note(Noted::PixelsCompared, now_s, compared);
-                    let swaps = if tells_swaps {
-                        "the driver tells when it swapped each frame"
-                    } else {
-                        "the driver does not tell when it swapped a frame: software times"
-                    };
-                    session.note(Noted::SwapWatch, now_s, swaps);
+                    session.note(Noted::PixelsCompared, now_s, proof.in_words());
+                    session.note(Noted::SwapWatch, now_s, swaps_in_words(&station));
                     sitting.begin(station, now_s)?;
                     *self = Self::Nothing;
                     return Ok(true);
@@ -122,6 +116,14 @@ fn measured(
             lowest_hz,
         }),
         _ => Ok(Some(refresh)),
+    }
+}
+
+fn swaps_in_words(station: &Station) -> &'static str {
+    if station.tells_swaps {
+        "the driver tells when it swapped each frame"
+    } else {
+        "the driver does not tell when it swapped a frame: software times"
     }
 }
 

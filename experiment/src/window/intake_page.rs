@@ -38,6 +38,16 @@ pub(crate) struct Looks<'a> {
 }
 
 impl IntakePage {
+    /// Asks the subject whether to stop.
+    pub(crate) fn ask_to_stop(&mut self) {
+        self.is_asking = true;
+    }
+
+    /// Whether the subject is asked whether to stop.
+    pub(crate) fn is_asking(&self) -> bool {
+        self.is_asking
+    }
+
     /// Draws the present step; says what the subject did.
     pub(crate) fn show(
         &mut self,

@@ -334,7 +334,12 @@ impl Brush<'_> {
         self.centred(number, field.center());
         let hint = centre + vec2(0.0, 72.0 * self.geometry.unit());
         self.centred(
-            self.galley("Enter", 24.0, f32::INFINITY, Align::Center),
+            self.galley(
+                &self.plan.texts.enter_key,
+                24.0,
+                f32::INFINITY,
+                Align::Center,
+            ),
             hint,
         );
     }
