@@ -324,7 +324,9 @@ impl Session {
             Event::Press(button) => self.press(button, at_s),
             Event::Drag(button) => self.drag(button),
             Event::Release(button) => self.release(button, at_s),
-            Event::Key(key) if self.view.shown_s.is_some() => self.key(key, at_s),
+            Event::Key(key) if self.view.shown_s.is_some() || self.interrupts(key) => {
+                self.key(key, at_s);
+            }
             Event::Saved if self.to_save().is_some() => self.next_trial(at_s),
             Event::Key(_) | Event::Saved => {}
         }

@@ -92,6 +92,13 @@ impl Session {
         }
     }
 
+    /// Whether a key lets the session rest or asks to stop: it does so at any time, also before the first frame of a
+    /// screen was submitted.
+    pub(super) fn interrupts(&self, key: Key) -> bool {
+        let is_over = matches!(self.state, State::Thanks | State::Over(_));
+        matches!(key, Key::Escape | Key::Pause) && self.asking.is_none() && !is_over
+    }
+
     pub(super) fn wait(&mut self, screen: Screen, event: Noted, at_s: f64) {
         if matches!(
             self.state,

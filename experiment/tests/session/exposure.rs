@@ -1,6 +1,6 @@
 //! How long the images stand, what of it is logged, and what interrupts them.
 
-use experiment::{Button, Key, Screen};
+use experiment::{Button, Event, Key, Screen};
 
 use crate::screening::{FLANKING, Screening};
 
@@ -54,6 +54,27 @@ fn escape_asks_and_an_interrupted_exposure_is_shown_again_from_its_beginning() {
     let answer = screening.session.to_save().unwrap();
     assert!((answer.exposure_submitted_s - 2.0).abs() < 0.02);
     assert_eq!((answer.trial, answer.missed_frames), (0, 0));
+}
+
+/// No other key counts before the first frame of a screen was submitted.
+#[test]
+fn escape_and_pause_are_taken_before_the_first_frame_of_a_picture_too() {
+    for key in [Key::Escape, Key::Pause] {
+        let mut screening = Screening::new(FLANKING);
+        screening.click(Button::Continue);
+        screening.until(|screen| matches!(screen, Screen::Exposure(..)));
+        assert!(!screening.session.is_shown());
+        screening.on(Event::Key(key));
+        let asked = screening.session.screen();
+        assert!(matches!(asked, Screen::ConfirmStop | Screen::Paused));
+        // Nobody has seen the question yet, so nobody has answered it.
+        screening.on(Event::Key(Key::Escape));
+        screening.on(Event::Key(Key::Enter));
+        assert_eq!(screening.session.screen(), asked);
+        screening.frames(2);
+        screening.on(Event::Key(Key::Enter));
+        assert_eq!(screening.session.screen(), Screen::Blank);
+    }
 }
 
 /// Every frame that was drawn is in the log, with its time: the log is judged by a plain list.
