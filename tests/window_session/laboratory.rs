@@ -1,6 +1,7 @@
 //! The laboratory example as a research assistant meets it: check, station, a whole session by mouse and keys from
 //! consent to thanks, the export and the report; and what is in the files.
 
+use std::cell::Cell;
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
@@ -8,6 +9,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
+use experiment::Trial;
 use protocols::Study;
 use protocols::rating::{Phase, RatingRow, ShownFirst, read_ratings};
 
@@ -29,7 +31,7 @@ const BARS_X: [usize; 2] = [498, 782];
 const BARS_PX: [usize; 2] = [829, 573];
 /// The left upper corner of the test picture, and of the left one on the page of instructions.
 const PICTURE: [usize; 2] = [576, 464];
-const FIRST_OF_PAGE: [usize; 2] = [424, 535];
+const FIRST_OF_PAGE: [usize; 2] = [424, 515];
 const PICTURE_PX: [usize; 2] = [128, 96];
 
 const TRIALS: usize = 14;
@@ -166,41 +168,65 @@ impl Laboratory {
         }
     }
 
-    /// The instructions, and the page whose pictures are the files' bytes.
-    fn read_the_instructions(&self) {
-        self.display.click(CONTINUE);
-        let original = png_pixels(&self.path("pictures/village-original.png"));
-        let page = |shot: &Screenshot| shot.part(FIRST_OF_PAGE, PICTURE_PX) == original;
-        self.display.wait_for("the page with pictures", page);
-        self.display.click(CONTINUE);
+    /// Clicks until it shows: a click before a page has stood for a frame does not count.
+    fn click_until(&self, place: [usize; 2], is_it: impl Fn(&Screenshot) -> bool) {
+        for _ in 0..10 {
+            sleep(Duration::from_millis(200));
+            self.display.click(place);
+            for _ in 0..20 {
+                if is_it(&self.display.screenshot()) {
+                    return;
+                }
+                sleep(Duration::from_millis(50));
+            }
+        }
+        panic!("the click at {place:?} changed nothing");
     }
 
-    /// The corner is white exactly while the test picture stands; in the first trial it is this one.
-    fn look_at_the_photodiode(&self) {
-        let test = png_pixels(&self.path("pictures/village-luma-4.png"));
+    /// The instructions, and the page whose pictures are the files' bytes.
+    fn read_the_instructions(&self) {
         let original = png_pixels(&self.path("pictures/village-original.png"));
-        let white = |shot: &Screenshot| shot.pixel(PHOTODIODE) == [255; 3];
-        let shot = self.display.wait_for("a white corner", white);
-        assert!(shot.part(PICTURE, PICTURE_PX) == test);
-        let is_reference = |shot: &Screenshot| shot.part(PICTURE, PICTURE_PX) == original;
-        let shot = self.display.wait_for("the reference", is_reference);
-        assert_eq!(shot.pixel(PHOTODIODE), [0; 3]);
+        self.click_until(CONTINUE, |shot| {
+            shot.part(FIRST_OF_PAGE, PICTURE_PX) == original
+        });
+        self.click_until(CONTINUE, |shot| !is_page(shot));
+    }
+
+    /// The two pictures of a trial: the test picture, and its reference.
+    fn pictures(&self, trial: &Trial) -> [Vec<u8>; 2] {
+        let id = trial.stimulus_id.as_str();
+        let (scene, _) = id.split_once('-').unwrap();
+        [id.to_owned(), format!("{scene}-original")]
+            .map(|name| png_pixels(&self.path(&format!("pictures/{name}.png"))))
     }
 
     /// Marks both bars, by mouse in odd trials and by keys in even ones; trial *n* gets the marks of [`marks`].
+    ///
+    /// Meanwhile the corner for the photodiode is looked at: white while the test picture stands, black with the reference.
     fn rate_all(&self) {
         let display = &self.display;
+        let study = Study::read(&self.path("protocol.toml")).unwrap();
+        let trials = experiment::trials(&study, &"01".parse().unwrap(), 1).unwrap();
+        let seen = [Cell::new(0), Cell::new(0)];
         loop {
             let rated = self.rows("01").len();
             if rated == TRIALS {
-                return;
+                break;
             }
+            let [test, reference] = self.pictures(&trials[rated]);
             let shot = display.wait_for("a page or the scale", |shot| {
+                let picture = shot.part(PICTURE, PICTURE_PX);
+                if shot.pixel(PHOTODIODE) == [255; 3] {
+                    assert!(picture == test, "another picture in trial {}", rated + 1);
+                    seen[0].set(seen[0].get() + 1);
+                } else if picture == reference {
+                    seen[1].set(seen[1].get() + 1);
+                }
+                assert!(picture != test || shot.pixel(PHOTODIODE) == [255; 3]);
                 is_page(shot) || is_scale(shot)
             });
             if is_page(&shot) {
-                display.click(CONTINUE);
-                display.wait_for("the end of the page", |shot| !is_page(shot));
+                self.click_until(CONTINUE, |shot| !is_page(shot));
                 continue;
             }
             let marks = marks(rated + 1);
@@ -222,6 +248,7 @@ impl Laboratory {
                 sleep(Duration::from_millis(10));
             }
         }
+        assert!(seen.iter().all(|count| count.get() > 0), "{seen:?}");
     }
 }
 
@@ -260,7 +287,6 @@ fn the_laboratory_example_goes_from_consent_to_the_report() {
     let session = laboratory.sit();
     laboratory.answer_before_the_trials();
     laboratory.read_the_instructions();
-    laboratory.look_at_the_photodiode();
     laboratory.rate_all();
     sleep(Duration::from_millis(300));
     laboratory.display.key("Return");
