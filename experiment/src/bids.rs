@@ -32,7 +32,7 @@ const BIDS_VERSION: &str = "1.10.0";
 /// # Errors
 ///
 /// There are no sessions, one cannot be read, the stimulus set is not there, `bids_dir` has something in it, or the
-/// system will not take the files.
+/// system will not take the files. Nothing is left of an export that failed.
 pub fn export_bids(
     study: &Study,
     stimuli_dir: &Path,
@@ -62,12 +62,12 @@ pub fn export_bids(
             .into_iter()
             .collect(),
     };
-    export.head(&sessions)?;
-    for session in &sessions {
-        export.session(session)?;
+    let written = export.all(stimuli_dir, &sessions);
+    if written.is_err() {
+        // The folder was new or empty: all that is in it is half an export. What cannot be removed is named by the error.
+        _ = fs::remove_dir_all(bids_dir);
     }
-    export.stimuli(stimuli_dir, &sessions)?;
-    Ok(sessions.len())
+    written.map(|()| sessions.len())
 }
 
 /// One session as it was read.
@@ -121,6 +121,14 @@ struct Export<'a> {
 }
 
 impl Export<'_> {
+    fn all(&self, stimuli_dir: &Path, sessions: &[Session]) -> Result<(), ExperimentError> {
+        self.head(sessions)?;
+        for session in sessions {
+            self.session(session)?;
+        }
+        self.stimuli(stimuli_dir, sessions)
+    }
+
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), ExperimentError> {
         let path = self.bids_dir.join(name);
         if let Some(folder) = path.parent() {

@@ -155,7 +155,7 @@ const AFTER_FACTORS: [(&str, Option<&str>, &str); 11] = [
     (
         "showings",
         None,
-        "how often the trial was begun; more than 1 if it was interrupted or answered too late",
+        "how often the trial was begun in this sitting; more than 1 if it was interrupted or answered too late",
     ),
     ("started_at", None, "start of the trial, UTC, ISO 8601"),
     ("observer", None, "person or simulated"),

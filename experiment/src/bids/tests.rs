@@ -129,6 +129,20 @@ fn nothing_is_exported_into_a_folder_with_files_or_from_one_without_sessions() {
 }
 
 #[test]
+fn nothing_is_left_of_an_export_that_lacks_a_picture() {
+    let place = Place::new();
+    place.rate(5);
+    let options = &place.options;
+    let bids = place.folder().join("bids");
+    let rated = place.rows()[4].stimulus_id.clone();
+    fs::write(options.stimuli_dir.join(format!("{rated}.png")), "torn").unwrap();
+    let error = export_bids(&place.study, &options.stimuli_dir, &options.data_dir, &bids);
+    let text = error.unwrap_err().to_string();
+    assert!(text.contains(rated.as_str()), "{text}");
+    assert!(!bids.exists());
+}
+
+#[test]
 fn a_malformed_session_stops_the_export_and_is_named() {
     let place = Place::new();
     place.rate(3);

@@ -2,7 +2,6 @@
 
 use std::fs::{self, OpenOptions};
 use std::io::Write as _;
-use std::os::unix::fs::PermissionsExt as _;
 
 use protocols::StimulusPlan;
 use protocols::rating::{RatingRow, header_line, read_ratings};
@@ -198,17 +197,6 @@ fn a_torn_header_is_written_again() {
         drop(place.open().unwrap());
         assert_eq!(fs::read_to_string(place.ratings_path()).unwrap(), header);
     }
-}
-
-#[test]
-fn only_the_owner_may_read_the_ratings() {
-    let place = Place::new();
-    place.rate(1);
-    let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
-    assert_eq!(mode(&place.ratings_path()), 0o600);
-    assert_eq!(mode(&DataSet::sidecar_path(&place.ratings_path())), 0o600);
-    assert_eq!(mode(&place.options.data_dir), 0o700);
-    assert_eq!(mode(&place.options.data_dir.join("data")), 0o700);
 }
 
 #[test]
