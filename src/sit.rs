@@ -49,7 +49,9 @@ pub(crate) fn check(arguments: &CheckArguments) -> anyhow::Result<ExitCode> {
     for line in screen.lines {
         console::print(line)?;
     }
-    console::print(refresh_line(&study, &data))?;
+    if let Some(line) = last_session(&study, &data) {
+        console::print(line)?;
+    }
     missing.extend(screen.faults);
     if missing.is_empty() {
         console::print("ready")?;
@@ -61,16 +63,17 @@ pub(crate) fn check(arguments: &CheckArguments) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(2))
 }
 
-/// The refresh of the display as the last session measured it.
-fn refresh_line(study: &Study, data: &Path) -> String {
+/// The refresh of the display as the last session measured it, if there was one.
+fn last_session(study: &Study, data: &Path) -> Option<String> {
     let sessions = experiment::session_list(study, data).unwrap_or_default();
     let measured = sessions.sessions.iter();
     let measured = measured.filter(|session| session.refresh.is_some());
     let last = measured.max_by(|left, right| left.started_at.cmp(&right.started_at));
-    match last.and_then(|session| session.refresh) {
-        Some(refresh) => format!("refresh: {}, as last measured", refresh.in_words()),
-        None => "refresh: measured over 300 frames when a session begins, and in acuity station --window".to_owned(),
-    }
+    let refresh = last?.refresh?;
+    Some(format!(
+        "refresh in the last session: {}",
+        refresh.in_words()
+    ))
 }
 
 /// What is known of the screen and the room, a line each.

@@ -246,7 +246,7 @@ fn facts(station: &StationFile, around: Around<'_>) -> Vec<(&'static str, String
         luminance(station.background_cd_m2),
     );
     let surround = station.surround.as_deref().unwrap_or("not noted");
-    let refresh = around.state.sessions.last_refresh();
+    let refresh = around.state.sessions.last_refresh().or(station.refresh);
     let refresh = refresh.map(experiment::Refresh::in_words);
     let monitor = station.monitor.as_deref();
     let size = format!(

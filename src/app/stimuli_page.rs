@@ -162,7 +162,9 @@ impl Making {
             (Stage::Images, _) => format!("Writing the images: {done} of {total}"),
             (Stage::Rays, Some((since_s, first))) if now_s > since_s => {
                 let rate = (step.done - first) as f64 / (now_s - since_s);
-                format!("Tracing: {done} of {total} rays, {rate:.0} rays/s")
+                let left_s = step.total.saturating_sub(step.done) as f64 / rate.max(1.0);
+                let rate = rate / 1000.0;
+                format!("Tracing: {done} of {total} rays, {rate:.0}K rays/s, {left_s:.0} s left")
             }
             (Stage::Rays, _) => format!("Tracing: {done} of {total} rays"),
         }
