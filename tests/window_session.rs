@@ -19,6 +19,8 @@ mod layouts;
 mod picture_study;
 #[path = "window_session/screensaver.rs"]
 mod screensaver;
+#[path = "window_session/shrunken_window.rs"]
+mod shrunken_window;
 #[path = "window_session/slow_display.rs"]
 mod slow_display;
 #[path = "window_session/station_window.rs"]

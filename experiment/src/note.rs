@@ -36,6 +36,8 @@ pub enum Noted {
     FocusLost,
     /// The window has the keyboard again.
     FocusRegained,
+    /// The window has another size than before, and no longer fills the monitor or does so again.
+    WindowSize,
     /// What is watched of screensaver and sleep.
     ScreenWatch,
     /// The screensaver covers the screen.
@@ -80,6 +82,7 @@ impl Noted {
             Self::StrayClick => "stray_click",
             Self::FocusLost => "focus_lost",
             Self::FocusRegained => "focus_regained",
+            Self::WindowSize => "window_size",
             Self::ScreenWatch => "screen_watch",
             Self::ScreensaverOn => "screensaver_on",
             Self::ScreensaverOff => "screensaver_off",

@@ -311,7 +311,7 @@ impl Sitting {
     }
 
     /// Puts frames and events so far into their tables.
-    fn log_timing(&mut self) -> Result<(), ExperimentError> {
+    pub(crate) fn log_timing(&mut self) -> Result<(), ExperimentError> {
         let (frames, notes) = (self.session.take_frames(), self.session.take_notes());
         self.timing.append(&frames, &notes)
     }

@@ -118,36 +118,41 @@ fn an_exposure_is_known_between_the_swaps_of_a_driver_that_tells_them() {
     let done = play_driver(display.name().to_owned());
     let mut child = place.session(&display, "D1", "5").spawn().unwrap();
     display.wait_for("the instructions", is_page);
-    for trial in 1..=2 {
-        sleep(REST);
-        if trial == 1 {
-            display.key("Return");
-        }
+    let data = place.folder.path().join("data");
+    let stem = "study-meyerliu1992_subject-D1_session-1_task-pilot";
+    let read = |name: String| fs::read_to_string(data.join(name)).unwrap();
+    let seen = || -> Vec<Exposure> {
+        let events = read(format!("timing/{stem}_events.csv"));
+        events.lines().filter_map(Exposure::of).collect()
+    };
+    sleep(REST);
+    display.key("Return");
+    // On a busy computer the driver may be late; such an exposure is left out, never guessed.
+    for trial in 1..=10 {
         display.wait_for("the scale", is_scale);
         for key in ["7", "Return"] {
             sleep(REST);
             display.key(key);
         }
         place.wait_for_row("D1", trial);
+        if seen().len() >= 2 {
+            break;
+        }
     }
     child.kill().unwrap();
     child.wait().unwrap();
 
-    let data = place.folder.path().join("data");
-    let stem = "study-meyerliu1992_subject-D1_session-1_task-pilot";
-    let read = |name: String| fs::read_to_string(data.join(name)).unwrap();
-    let events = read(format!("timing/{stem}_events.csv"));
     let frames = read(format!("timing/{stem}_frames.csv"));
     let sidecar: serde_json::Value =
         serde_json::from_str(&read(format!("data/{stem}_data.json"))).unwrap();
     assert_eq!(sidecar["sittings"][0]["station"]["tells_swaps"], true);
 
     let swaps: HashMap<u32, Done> = done.try_iter().map(|done| (done.number, done)).collect();
-    let exposures: Vec<Exposure> = events.lines().filter_map(Exposure::of).collect();
-    assert_eq!(exposures.len(), 2, "{events}");
-    for (exposure, trial) in exposures.iter().zip(1..) {
+    let exposures = seen();
+    assert!(exposures.len() >= 2);
+    for exposure in &exposures {
         let [onset, offset] = exposure.swaps.map(|number| &swaps[&number]);
-        assert_eq!(exposure.trial, trial);
+        let trial = exposure.trial;
         assert_eq!(exposure.length_us, offset.at_us - onset.at_us);
         assert_eq!(exposure.refreshes, offset.refresh - onset.refresh);
         assert!(!onset.is_skipped && !offset.is_skipped);

@@ -8,7 +8,7 @@ use protocols::{SessionPlan, StimulusId};
 use super::Outcome;
 use super::before::Before;
 use super::clock::Clock;
-use super::gate::{Gate, Sizes};
+use super::gate::{Filling, Gate, Sizes};
 use super::geometry::Geometry;
 use super::input;
 use super::intake_page::{IntakePage, Looks};
@@ -108,11 +108,12 @@ pub(crate) struct Aside {
 const OPENING_S: f64 = 2.0;
 
 impl Aside {
-    /// Hears the experimenter and the X server.
+    /// Hears the experimenter, the X server and the driver.
     fn hear(&mut self, context: &egui::Context, sitting: &mut Sitting, now_s: f64) {
         for (event, detail) in self.watch.take() {
             sitting.session.note(event, now_s, detail);
         }
+        self.swaps.begin(context, &mut sitting.session, now_s);
         let view = self.view.as_mut();
         if view.is_some_and(|view| view.pass_on(sitting, now_s)) {
             self.asks_focus_until_s = now_s + OPENING_S;
@@ -141,6 +142,7 @@ pub(crate) struct SessionApp {
     clock: Clock,
     outcome: Outcome,
     before: Before,
+    filling: Filling,
     monitor: Monitor,
     focus: Focus,
     intake_page: IntakePage,
@@ -161,6 +163,7 @@ impl SessionApp {
             clock,
             outcome,
             before: Before::Sizing(Gate::new()),
+            filling: Filling::default(),
             monitor: Monitor::default(),
             focus: Focus::default(),
             intake_page: IntakePage::default(),
@@ -186,8 +189,6 @@ impl SessionApp {
         };
         brush.background();
         self.aside.hear(context, &mut self.sitting, now_s);
-        let session = &mut self.sitting.session;
-        self.aside.swaps.begin(context, session, now_s);
         if !matches!(self.before, Before::Nothing) {
             context.request_repaint();
             context.set_cursor_icon(CursorIcon::None);
@@ -202,6 +203,8 @@ impl SessionApp {
             }
         }
 
+        let (filling, sitting) = (&mut self.filling, &mut self.sitting);
+        keep_filling(filling, sitting, context, (sizes, now_s))?;
         let page = Some(self.sitting.intake.step()).filter(|step| *step != Step::Done);
         self.focus
             .note(context, &mut self.sitting.session, (page, now_s));
@@ -235,6 +238,31 @@ impl SessionApp {
         self.aside.tell(&self.sitting, None, self.clock);
         Ok(None)
     }
+}
+
+/// Notes when the window no longer fills the monitor, and gives up if it stays so.
+fn keep_filling(
+    filling: &mut Filling,
+    sitting: &mut Sitting,
+    context: &egui::Context,
+    (sizes, now_s): (Sizes, f64),
+) -> Result<(), ExperimentError> {
+    let looked = filling.look(sizes, now_s);
+    match &looked {
+        Ok(Some(words)) => sitting
+            .session
+            .note(Noted::WindowSize, now_s, words.clone()),
+        Err(error) => {
+            let words = error.to_string();
+            sitting.session.note(Noted::WindowSize, now_s, words);
+            sitting.log_timing()?;
+        }
+        Ok(None) => {}
+    }
+    if filling.is_lost() {
+        context.request_repaint();
+    }
+    looked.map(|_| ())
 }
 
 /// Draws the present screen, and asks for the next frame if one must follow.

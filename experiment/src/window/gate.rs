@@ -23,6 +23,52 @@ pub(crate) struct Gate {
     is_sized_by_hand: bool,
 }
 
+/// Whether the window goes on filling the monitor: it would not if its window manager died.
+#[derive(Debug, Default)]
+pub(crate) struct Filling {
+    lost_s: Option<f64>,
+}
+
+/// For this long the window may be smaller, until what made it so is over.
+const SMALLER_S: f64 = 1.0;
+
+impl Filling {
+    /// Looks once more; gives words for the log if that has changed.
+    ///
+    /// # Errors
+    ///
+    /// The window has not filled the monitor for a while.
+    pub(crate) fn look(
+        &mut self,
+        sizes: Sizes,
+        at_s: f64,
+    ) -> Result<Option<String>, ExperimentError> {
+        let fills = sizes.window_px == sizes.monitor_px || sizes.monitor_px == [0, 0];
+        let [width, height] = sizes.window_px;
+        let words = || Some(format!("{width} x {height} pixels"));
+        match self.lost_s {
+            None if !fills => {
+                self.lost_s = Some(at_s);
+                Ok(words())
+            }
+            Some(_) if fills => {
+                self.lost_s = None;
+                Ok(words())
+            }
+            Some(lost_s) if at_s - lost_s > SMALLER_S => Err(ExperimentError::NotFullScreen {
+                window_px: sizes.window_px,
+                monitor_px: sizes.monitor_px,
+            }),
+            _ => Ok(None),
+        }
+    }
+
+    /// Whether the window is smaller now.
+    pub(crate) fn is_lost(&self) -> bool {
+        self.lost_s.is_some()
+    }
+}
+
 /// The sizes of the window and of its monitor, in pixels of the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sizes {
@@ -107,5 +153,36 @@ impl Gate {
             context.send_viewport_cmd(ViewportCommand::InnerSize(monitor.unwrap_or_default()));
         }
         Ok(false)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_window_that_stays_smaller_ends_the_session_and_one_that_comes_back_does_not() {
+        let sizes = |window_px| Sizes {
+            window_px,
+            monitor_px: [1280, 1024],
+            pixels_per_point: 1.0,
+        };
+        let (whole, smaller) = (sizes([1280, 1024]), sizes([800, 600]));
+        let mut filling = Filling::default();
+        assert_eq!(filling.look(whole, 1.0).unwrap(), None);
+        let words = filling.look(smaller, 2.0).unwrap();
+        assert_eq!(words.as_deref(), Some("800 x 600 pixels"));
+        assert_eq!(filling.look(smaller, 2.9).unwrap(), None);
+        assert!(filling.look(whole, 2.95).unwrap().is_some() && !filling.is_lost());
+        filling.look(smaller, 4.0).unwrap();
+        assert!(filling.is_lost());
+        let error = filling.look(smaller, 5.1).unwrap_err().to_string();
+        assert!(error.contains("800 x 600"), "{error}");
+        // The monitor is not known for a moment.
+        let unknown = Sizes {
+            monitor_px: [0, 0],
+            ..smaller
+        };
+        assert_eq!(Filling::default().look(unknown, 1.0).unwrap(), None);
     }
 }
