@@ -26,7 +26,8 @@ fn the_experimenter_pauses_notes_and_stops() {
     let child = session.arg("--experimenter").spawn().unwrap();
     display.wait_for("the instructions", is_page);
     display.place(TITLE, SIZE);
-    sleep(Duration::from_secs(1));
+    // For two seconds after the view has opened the subject's window takes the keyboard back.
+    sleep(Duration::from_secs(3));
     click(&display, 200, 82);
     display.write("coughs");
     display.key("Return");
