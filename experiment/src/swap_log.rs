@@ -11,7 +11,7 @@ use std::collections::VecDeque;
 
 /// After this long without a new frame every swap is done and heard.
 const REST_S: f64 = 0.1;
-/// How many swaps are kept: a swap is looked up some frames after it is heard.
+/// How many swaps are kept: one is looked up some frames after its own frame was begun.
 const KEPT: usize = 1024;
 
 /// One swap, as the driver tells it.
@@ -49,12 +49,39 @@ impl SwappedExposure {
     }
 }
 
-/// The frames of one exposure, and their swaps as far as they were heard.
+/// A frame whose swap is sought.
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    frame: u64,
+    swap: Option<Swap>,
+}
+
+impl Edge {
+    fn of(frame: u64) -> Self {
+        Self { frame, swap: None }
+    }
+
+    fn seek(&mut self, swaps: &VecDeque<Swap>, first_swap: u32) {
+        let number = first_swap.wrapping_add(low_bits(self.frame));
+        self.swap = self.swap.or_else(|| done(swaps, number));
+    }
+}
+
+/// An exposure that goes on.
+#[derive(Clone, Copy, Debug)]
+struct Standing {
+    trial: usize,
+    onset: Edge,
+    /// The number of the swap of frame 0 at the rest before, if it was known.
+    first_swap: Option<u32>,
+}
+
+/// An exposure that is over, and not yet certain.
 #[derive(Clone, Copy, Debug)]
 struct Pending {
     trial: usize,
-    frames: [u64; 2],
-    swaps: [Option<Swap>; 2],
+    onset: Edge,
+    offset: Edge,
     /// The number of the swap of frame 0 at the rest before.
     first_swap: u32,
 }
@@ -67,8 +94,7 @@ pub(crate) struct SwapLog {
     first_swap: Option<u32>,
     /// The frame that was begun last, and when.
     latest: Option<(u64, f64)>,
-    /// The trial whose test image stands, and the first frame with it.
-    standing: Option<(usize, u64)>,
+    standing: Option<Standing>,
     pending: Vec<Pending>,
 }
 
@@ -89,11 +115,14 @@ impl SwapLog {
     /// A frame is begun; returns the exposures that are certain by now.
     pub(crate) fn begin(&mut self, frame: u64, at_s: f64) -> Vec<SwappedExposure> {
         let swaps = &self.swaps;
+        if let Some(standing) = &mut self.standing
+            && let Some(first_swap) = standing.first_swap
+        {
+            standing.onset.seek(swaps, first_swap);
+        }
         for pending in &mut self.pending {
-            let first_swap = pending.first_swap;
-            for (swap, frame) in pending.swaps.iter_mut().zip(pending.frames) {
-                *swap = swap.or_else(|| done(swaps, number_of(frame, first_swap)));
-            }
+            pending.onset.seek(swaps, pending.first_swap);
+            pending.offset.seek(swaps, pending.first_swap);
         }
         let before = self.latest.replace((frame, at_s));
         match before {
@@ -108,16 +137,22 @@ impl SwapLog {
             return;
         };
         match (self.standing, test_image_of) {
-            (None, Some(trial)) => self.standing = Some((trial, frame)),
-            (Some((trial, onset)), None) => {
+            (None, Some(trial)) => {
+                self.standing = Some(Standing {
+                    trial,
+                    onset: Edge::of(frame),
+                    first_swap: self.first_swap,
+                });
+            }
+            (Some(standing), None) => {
                 self.standing = None;
-                self.pending
-                    .extend(self.first_swap.map(|first_swap| Pending {
-                        trial,
-                        frames: [onset, frame],
-                        swaps: [None, None],
-                        first_swap,
-                    }));
+                let pending = standing.first_swap.map(|first_swap| Pending {
+                    trial: standing.trial,
+                    onset: standing.onset,
+                    offset: Edge::of(frame),
+                    first_swap,
+                });
+                self.pending.extend(pending);
             }
             _ => {}
         }
@@ -128,23 +163,17 @@ impl SwapLog {
         let latest = self.swaps.back().filter(|swap| swap.at_s >= began_s);
         self.first_swap = latest.map(|swap| swap.number.wrapping_sub(low_bits(frame)));
         let first_swap = self.first_swap;
-        let certain = |pending: Pending| match pending.swaps {
-            [Some(onset), Some(offset)] if first_swap == Some(pending.first_swap) => {
-                Some(SwappedExposure {
-                    trial: pending.trial,
-                    onset,
-                    offset,
-                })
-            }
-            _ => None,
+        let certain = |pending: Pending| {
+            let is_same = first_swap == Some(pending.first_swap);
+            let (onset, offset) = (pending.onset.swap?, pending.offset.swap?);
+            is_same.then_some(SwappedExposure {
+                trial: pending.trial,
+                onset,
+                offset,
+            })
         };
         self.pending.drain(..).filter_map(certain).collect()
     }
-}
-
-/// The number of the swap of a frame.
-fn number_of(frame: u64, first_swap: u32) -> u32 {
-    first_swap.wrapping_add(low_bits(frame))
 }
 
 /// A frame's number as it wraps in the driver's.

@@ -153,6 +153,39 @@ fn a_swap_too_many_or_unheard_gives_no_time() {
     }
 }
 
+/// 1500 refreshes, more than the swaps that are kept: the paper's ten seconds at 150 Hz.
+#[test]
+fn a_long_exposure_has_its_onset_too() {
+    let mut world = World::new();
+    world.frames(5, None);
+    world.rest();
+    world.frames(1500, Some(0));
+    world.frames(4, None);
+    world.rest();
+    world.frames(1, None);
+    let [exposure] = world.seen[..] else {
+        panic!("{:?}", world.seen)
+    };
+    assert_eq!(exposure.offset.refresh - exposure.onset.refresh, 1500);
+}
+
+/// The program stalls in the middle of the exposure, after a swap too many: the count is wrong for its onset.
+#[test]
+fn a_stall_within_an_exposure_mends_no_wrong_count() {
+    let mut world = World::new();
+    world.frames(5, None);
+    world.rest();
+    world.frames(3, Some(0));
+    world.number = world.number.wrapping_add(1);
+    world.frames(3, Some(0));
+    world.rest();
+    world.frames(3, Some(0));
+    world.frames(3, None);
+    world.rest();
+    world.frames(1, None);
+    assert_eq!(world.seen, []);
+}
+
 #[test]
 fn a_driver_that_tells_nothing_gives_nothing() {
     let mut log = SwapLog::default();
